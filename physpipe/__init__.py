@@ -1,0 +1,1 @@
+"""Unsupervised intuitive physics: raw video to tracks to forecasts."""

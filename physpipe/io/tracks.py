@@ -1,0 +1,136 @@
+"""THE track table: truth, tracks and baselines alike, one row per clip, object and frame."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from physpipe.core.errors import InputError
+from physpipe.io.atomic import replacing
+from physpipe.io.clips import ClipSet
+
+SCHEMA_VERSION = 1
+KEY = ["clip", "object", "frame"]
+STATUSES = ("tracked", "lost", "corrected", "exact", "reference")
+DTYPES = {
+    "clip": "str",
+    "object": "int16",
+    "frame": "int32",
+    "time_s": "float64",
+    "x": "float32",
+    "y": "float32",
+    "score": "float32",
+    "visible": "bool",
+    "status": "str",
+}
+
+
+def empty() -> pd.DataFrame:
+    """A track table with no rows, e.g. the truth of film that nobody annotated."""
+    return pd.DataFrame({name: pd.Series(dtype=kind) for name, kind in DTYPES.items()})
+
+
+def rows(
+    clip: str,
+    times_s: NDArray[np.float64],
+    xy: NDArray[np.floating],
+    score: NDArray[np.floating],
+    status: str = "tracked",
+) -> pd.DataFrame:
+    """Rows of one clip from `xy` (T, K, 2) pixels (NaN where lost) and `score` (T, K) in [0, 1]."""
+    T, K = xy.shape[:2]
+    found = np.isfinite(xy).all(axis=2)
+    columns = {
+        "clip": clip,
+        "object": np.repeat(np.arange(K, dtype=np.int16), T),
+        "frame": np.tile(np.arange(T, dtype=np.int32), K),
+        "time_s": np.tile(times_s, K),
+        "x": np.where(found, xy[..., 0], np.nan).T.ravel(),
+        "y": np.where(found, xy[..., 1], np.nan).T.ravel(),
+        "score": np.where(found, score, 0).T.ravel(),
+        "visible": found.T.ravel(),
+        "status": np.where(found, status, "lost").T.ravel().astype(object),
+    }
+    return pd.DataFrame(columns).astype(DTYPES)
+
+
+def positions(table: pd.DataFrame, clip: str) -> NDArray[np.float32]:
+    """(T, K, 2) pixels of one clip, NaN where an object is not visible; raises KeyError when it has no rows."""
+    mine = table[table["clip"] == clip]
+    if mine.empty:
+        raise KeyError(f"the track table has no clip {clip}")
+    K = int(mine["object"].max()) + 1
+    ordered = mine.sort_values(["frame", "object"])
+    return ordered[["x", "y"]].to_numpy(np.float32).reshape(-1, K, 2)
+
+
+def by_clip(table: pd.DataFrame) -> dict[str, NDArray[np.float32]]:
+    """Clip name to (T, K, 2) pixels, for all clips of the table at once."""
+    return {str(name): positions(mine, str(name)) for name, mine in table.groupby("clip", sort=True)}
+
+
+def save(path: Path, table: pd.DataFrame, producer: str, clips: ClipSet) -> None:
+    """Checks, sorts and writes the table; schema version, producer and geometry go into the metadata."""
+    table = table.astype(DTYPES).sort_values(KEY, ignore_index=True)
+    check(path, table)
+    arrow = pa.Table.from_pandas(table, preserve_index=False)
+    arrow = arrow.set_column(
+        arrow.schema.get_field_index("status"), "status", arrow["status"].dictionary_encode()
+    )
+    ours = {"version": SCHEMA_VERSION, "producer": producer, "geometry": _geometries(clips)}
+    metadata = {**(arrow.schema.metadata or {}), b"physpipe": json.dumps(ours, sort_keys=True).encode()}
+    with replacing(path) as temporary:
+        pq.write_table(arrow.replace_schema_metadata(metadata), temporary)
+
+
+def load(path: Path) -> pd.DataFrame:
+    """Reads and checks a track table; raises InputError naming the file and the first bad row."""
+    if not path.is_file():
+        raise InputError(path, "no such file", "run `dvc repro`, which makes it")
+    table = pq.read_table(path).to_pandas()
+    missing = set(DTYPES) - set(table.columns)
+    if missing:
+        raise InputError(
+            path, f"not a track table: lacks {sorted(missing)}", "make it again with `dvc repro`"
+        )
+    table = table.astype(DTYPES)
+    check(path, table)
+    return table
+
+
+def metadata(path: Path) -> Mapping[str, object]:
+    """What `save` wrote beside the rows: version, producer, geometry of each clip in its source."""
+    return json.loads(pq.read_schema(path).metadata[b"physpipe"])
+
+
+def check(path: Path, table: pd.DataFrame) -> None:
+    """Raises InputError for repeated keys, gaps, scores outside [0, 1] or positions that belie `visible`."""
+    faults = {
+        "repeats clip, object, frame": table.duplicated(KEY),
+        "has a score outside [0, 1]": ~table["score"].between(0, 1),
+        "is visible without a position": table["visible"] & table[["x", "y"]].isna().any(axis=1),
+        "has a position but is not visible": ~table["visible"] & table[["x", "y"]].notna().any(axis=1),
+    }
+    for fault, bad in faults.items():
+        if bad.any():
+            row = table[bad].iloc[0]
+            where = f"clip {row['clip']}, object {row['object']}, frame {row['frame']}"
+            raise InputError(path, f"row of {where} {fault} ({int(bad.sum())} such rows)", "correct the rows")
+    spans = table.groupby(["clip", "object"])["frame"].agg(["min", "max", "size"])
+    gaps = spans[(spans["min"] != 0) | (spans["max"] + 1 != spans["size"])]
+    lengths = spans.groupby("clip")["size"].nunique()
+    uneven = lengths[lengths > 1]
+    if len(gaps) or len(uneven):
+        clip = gaps.index[0][0] if len(gaps) else uneven.index[0]
+        raise InputError(path, f"clip {clip} lacks rows", "keep a row a frame; a lost object keeps NaN rows")
+
+
+def _geometries(clips: ClipSet) -> dict[str, list[float]]:
+    first = clips.table.drop_duplicates("clip")
+    fields = ["left", "top", "crop_width", "crop_height", "width", "height"]
+    return {row["clip"]: [float(row[key]) for key in fields] for _, row in first.iterrows()}

@@ -1,0 +1,1 @@
+"""L2: predictors of motion (paper section 3.2)."""

@@ -1,0 +1,1 @@
+"""L5: metrics files, figures, overlays and the page."""

@@ -1,0 +1,1 @@
+"""L2: simulated worlds: terrain, physics, drawing, camera."""

@@ -1,0 +1,1 @@
+"""L3: trackers on one contract."""
