@@ -10,3 +10,10 @@ class InputError(Exception):
 
     def __str__(self) -> str:
         return f"{self.where}: {self.reason}. To mend: {self.mend}."
+
+
+class DiskFullError(InputError):
+    """Nothing more can be written; no input is at fault, so nothing may be skipped because of it."""
+
+    def __init__(self, where: object, reason: str = "the disk is full", mend: str = "free some space and run again"):
+        super().__init__(where, reason, mend)

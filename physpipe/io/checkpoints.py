@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import shutil
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -26,9 +27,7 @@ def load(path: Path) -> dict[str, Any]:
     try:
         return torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:
-        raise InputError(
-            path, f"cannot be read as weights ({error})", "remove it and run `dvc repro`"
-        ) from None
+        raise InputError(path, f"cannot be read as weights ({error})", "remove it and run `dvc repro`") from None
 
 
 def load_into(model: torch.nn.Module, weights: dict[str, Any], path: Path) -> None:
@@ -36,9 +35,7 @@ def load_into(model: torch.nn.Module, weights: dict[str, Any], path: Path) -> No
     try:
         model.load_state_dict(weights)
     except RuntimeError as error:
-        raise InputError(
-            path, f"weights of another model ({error})", "run `dvc repro` to train it again"
-        ) from None
+        raise InputError(path, f"weights of another model ({error})", "run `dvc repro` to train it again") from None
 
 
 def scratch(stage: str, params: Iterable[BaseModel], inputs: Iterable[Path]) -> Path:
@@ -57,3 +54,8 @@ def scratch(stage: str, params: Iterable[BaseModel], inputs: Iterable[Path]) -> 
 
 def _files(path: Path) -> list[Path]:
     return sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else [path]
+
+
+def forget(folder: Path) -> None:
+    """Removes a stage's checkpoints once its result is written."""
+    shutil.rmtree(folder, ignore_errors=True)

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from physpipe.core.errors import InputError
 from physpipe.core.geometry import Geometry
+from physpipe.io import results
 from physpipe.io.atomic import replacing_folder
 
 Split = Literal["train", "valid", "test"]
 SPLITS: tuple[Split, ...] = get_args(Split)
 STATUSES = ("ok", "decode_error", "missing")
 TABLE = "clips.parquet"
+RECORDINGS = "recordings.csv"
 GEOMETRY = ["left", "top", "crop_width", "crop_height", "width", "height"]
 COLUMNS = ["clip", "frame", "time_s", "source", "source_frame", "source_time_s", "status", "split", *GEOMETRY]
 
@@ -53,6 +55,10 @@ class ClipSet:
         self.table = pd.read_parquet(folder / TABLE)
         self._rows = dict(list(self.table.groupby("clip", sort=True)))
 
+    def __reduce__(self) -> tuple[type["ClipSet"], tuple[Path]]:
+        """Crosses process pools as its folder: a worker reads the table itself."""
+        return ClipSet, (self.folder,)
+
     def names(self, *splits: Split) -> list[str]:
         """Sorted clip names, of the given splits only when any is given."""
         return [name for name in self._rows if not splits or self.split(name) in splits]
@@ -81,8 +87,11 @@ class ClipSet:
         return Geometry(*(row[key] for key in GEOMETRY))
 
 
-def save(folder: Path, clips: Iterable[Clip]) -> None:
-    """Writes a data set's clips, one at a time, into a folder that appears only when complete."""
+def save(folder: Path, clips: Iterable[Clip], recordings: pd.DataFrame | None = None) -> None:
+    """Writes a data set's clips, one at a time, into a folder that appears only when complete.
+
+    `recordings`, a row for each recording that the clips come from, goes beside them as CSV.
+    """
     tables = []
     with replacing_folder(folder) as temporary:
         for clip in clips:
@@ -92,6 +101,8 @@ def save(folder: Path, clips: Iterable[Clip]) -> None:
             raise InputError(folder, "no clip to save", "check that the recordings show motion")
         table = pd.concat(tables).sort_values(["clip", "frame"], ignore_index=True)
         table.to_parquet(temporary / TABLE, index=False)
+        if recordings is not None:
+            results.save_csv(temporary / RECORDINGS, recordings)
 
 
 def _rows(clip: Clip) -> pd.DataFrame:

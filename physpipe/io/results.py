@@ -30,6 +30,13 @@ def save_csv(path: Path, table: pd.DataFrame) -> None:
         table.to_csv(temporary, index=False, float_format="%.6g")
 
 
+def load_csv(path: Path) -> pd.DataFrame:
+    """A table, without columns where nothing was written; raises InputError when the file is absent."""
+    if not path.is_file():
+        raise InputError(path, "no such file", "run `dvc repro`, which makes it")
+    return pd.read_csv(path) if path.read_text().strip() else pd.DataFrame()
+
+
 def _strict(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(key): _strict(each) for key, each in value.items()}

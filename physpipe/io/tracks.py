@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from physpipe.core.errors import InputError
-from physpipe.io.atomic import replacing
+from physpipe.io.atomic import replacing, replacing_folder
 from physpipe.io.clips import ClipSet
 
 SCHEMA_VERSION = 1
@@ -74,14 +74,22 @@ def by_clip(table: pd.DataFrame) -> dict[str, NDArray[np.float32]]:
     return {str(name): positions(mine, str(name)) for name, mine in table.groupby("clip", sort=True)}
 
 
+def object_count(path: Path, table: pd.DataFrame) -> int:
+    """K, the number of objects in every clip; raises InputError naming `path` when clips differ or there are none."""
+    counts = table.groupby("clip")["object"].nunique()
+    found = sorted(set(counts.tolist()))
+    if len(found) != 1:
+        reason = f"clips with {found} objects" if found else "no tracks"
+        raise InputError(path, reason, "track the same number of objects, at least one, in every clip")
+    return found[0]
+
+
 def save(path: Path, table: pd.DataFrame, producer: str, clips: ClipSet) -> None:
     """Checks, sorts and writes the table; schema version, producer and geometry go into the metadata."""
     table = table.astype(DTYPES).sort_values(KEY, ignore_index=True)
     check(path, table)
     arrow = pa.Table.from_pandas(table, preserve_index=False)
-    arrow = arrow.set_column(
-        arrow.schema.get_field_index("status"), "status", arrow["status"].dictionary_encode()
-    )
+    arrow = arrow.set_column(arrow.schema.get_field_index("status"), "status", arrow["status"].dictionary_encode())
     ours = {"version": SCHEMA_VERSION, "producer": producer, "geometry": _geometries(clips)}
     metadata = {**(arrow.schema.metadata or {}), b"physpipe": json.dumps(ours, sort_keys=True).encode()}
     with replacing(path) as temporary:
@@ -95,12 +103,24 @@ def load(path: Path) -> pd.DataFrame:
     table = pq.read_table(path).to_pandas()
     missing = set(DTYPES) - set(table.columns)
     if missing:
-        raise InputError(
-            path, f"not a track table: lacks {sorted(missing)}", "make it again with `dvc repro`"
-        )
+        raise InputError(path, f"not a track table: lacks {sorted(missing)}", "make it again with `dvc repro`")
     table = table.astype(DTYPES)
     check(path, table)
     return table
+
+
+def save_folder(folder: Path, tables: Mapping[str, pd.DataFrame], producer: str, clips: ClipSet) -> None:
+    """Writes a table a tracker, `<tracker>.parquet`, into a folder that appears only when complete."""
+    with replacing_folder(folder) as temporary:
+        for name, table in tables.items():
+            save(temporary / f"{name}.parquet", table, f"{producer} {name}", clips)
+
+
+def load_folder(folder: Path) -> dict[str, pd.DataFrame]:
+    """Tracker name to its table, in the order of names; raises InputError as `load` does."""
+    if not folder.is_dir():
+        raise InputError(folder, "no such folder", "run `dvc repro`, which makes it")
+    return {path.stem: load(path) for path in sorted(folder.glob("*.parquet"))}
 
 
 def metadata(path: Path) -> Mapping[str, object]:

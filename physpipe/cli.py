@@ -1,0 +1,95 @@
+"""The command `physpipe`: what is done by hand around the pipeline."""
+
+import argparse
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from physpipe.core.errors import InputError
+from physpipe.core.params import PARAMS
+from physpipe.ingest.dataset import IngestParams
+from physpipe.io import adding, params_file
+from physpipe.io.atomic import replacing
+
+TEMPLATE = "pendulum"
+EXAMPLE = "example: physpipe add marbles ~/film --source-fps 240 --fps 80 --crop 420,0,1080,1080 --objects 2"
+
+
+def main() -> None:
+    """Runs one command; a user's mistake ends as one line, not a traceback."""
+    words = _parser().parse_args()
+    try:
+        words.command(words)
+    except InputError as error:
+        sys.exit(f"error: {error}")
+
+
+def add(words: argparse.Namespace) -> None:
+    """Film into data/raw, tables into data/annotations, a section into params.yaml."""
+    name = words.name
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
+        raise InputError(name, "not a name for a data set", "use letters, digits and _, a letter first")
+    text = _extended(PARAMS.read_text(), name, words) if PARAMS.is_file() else None
+    if text is None:
+        raise InputError(PARAMS, "no such file", "run from the project's root")
+    annotations = Path("data/annotations") / name
+    found = adding.copy_film(words.folder, Path("data/raw") / name, annotations)
+    with replacing(PARAMS) as temporary:
+        temporary.write_text(text)
+    print(f"{len(found)} recordings in data/raw/{name}; section `datasets.{name}` in {PARAMS}. Next:")
+    print(f"  dvc add data/raw/{name}")
+    print("  dvc repro" if words.run else f"  dvc exp run -S 'run.datasets=[{name}]'")
+    print(f"To measure errors, give boxes in {annotations}/templates.csv (clip names: data/clips/{name}).")
+
+
+def _extended(text: str, name: str, words: argparse.Namespace) -> str:
+    """params.yaml's text with the new data set; raises InputError for values that ingest would refuse."""
+    extended = params_file.with_section(text, "datasets", TEMPLATE, name, _changes(words))
+    if words.run:
+        extended = params_file.with_item(extended, "run.datasets", name)
+    try:
+        IngestParams.model_validate(yaml.safe_load(extended)["datasets"][name]["ingest"])
+    except ValueError as error:
+        raise InputError(PARAMS, f"ingest would refuse it: {error}", "correct the options") from None
+    return extended
+
+
+def _changes(words: argparse.Namespace) -> dict[str, Any]:
+    """What differs from the template's section: its box and rates are of its own film."""
+    changes = {"ingest.fps": words.fps, "ingest.source_fps": words.source_fps, "ingest.crop": words.crop}
+    if words.clip_frames is not None:
+        changes["ingest.clip_frames"] = words.clip_frames
+        changes["ingest.min_frames"] = words.clip_frames
+    if words.objects is not None:
+        changes["motion.objects"] = words.objects
+    return changes
+
+
+def _crop(word: str) -> dict[str, int]:
+    values = word.split(",")
+    if len(values) != 4:
+        raise argparse.ArgumentTypeError("give left,top,width,height")
+    return dict(zip(("left", "top", "width", "height"), map(int, values), strict=True))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="physpipe", description=__doc__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    command = commands.add_parser("add", help="add a folder of film as a data set", epilog=EXAMPLE)
+    command.set_defaults(command=add)
+    command.add_argument("name", metavar="NAME", help="of the new data set")
+    command.add_argument("folder", metavar="FOLDER", type=Path, help="of videos or folders of images; stays as it is")
+    command.add_argument("--source-fps", type=float, help="true rate, where the timestamps lie; images need it")
+    command.add_argument("--fps", type=float, help="rate of the clips (default: the film's own)")
+    command.add_argument("--objects", type=int, help=f"number of objects (default: as in `{TEMPLATE}`)")
+    command.add_argument("--crop", type=_crop, metavar="L,T,W,H", help="box in pixels (default: centred square)")
+    command.add_argument("--clip-frames", type=int, help=f"frames a clip (default: as in `{TEMPLATE}`)")
+    command.add_argument("--run", action="store_true", help="append to `run.datasets`, for `dvc repro`")
+    return parser
+
+
+if __name__ == "__main__":
+    main()

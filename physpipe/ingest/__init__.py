@@ -1,0 +1,1 @@
+"""L2: recordings, whatever their rate, size and shape, to clips."""

@@ -1,0 +1,120 @@
+"""Stretches of clips to learn motion from: the first frames and positions seen, the later positions asked for."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import torch
+from numpy.typing import NDArray
+from pydantic import Field
+from torch import Tensor
+
+from physpipe.core.determinism import device
+from physpipe.core.errors import InputError
+from physpipe.core.params import Section
+from physpipe.io import tracks
+from physpipe.io.clips import TABLE, ClipSet, Split, common_size
+from physpipe.predictors.base import Seen, Window
+
+Symmetry = tuple[bool, bool, bool]
+"""Mirrored in x, mirrored in y, x and y swapped: the eight together are all turns and mirrors of a square."""
+
+
+class WindowParams(Section):
+    """What is drawn from the clips."""
+
+    noise_px: float = Field(ge=0)
+    """Standard deviation, a coordinate, of noise added to the seen positions in training; pixels."""
+    valid_windows: int = Field(ge=1)
+    """Windows of the validation clips, evenly spread, that a validation looks at."""
+
+
+class TrackWindows:
+    """Every stretch of `horizon` + 1 frames of one split whose positions are all known.
+
+    Raises InputError when no clip is so long, when the predictor sees so many frames that none is left to forecast,
+    when clips differ in size or number of objects, or when the tracks lack a clip.
+    """
+
+    def __init__(self, clips: ClipSet, table: pd.DataFrame, split: Split, seen_frames: int, horizon: int):
+        self.seen_frames, self.horizon = seen_frames, horizon
+        if horizon < seen_frames:
+            reason = f"frame {horizon} is one of the {seen_frames} that the predictor sees"
+            raise InputError("params.yaml", reason, "raise `predict.horizon`")
+        self.height, self.width = common_size(clips)
+        self.objects = tracks.object_count(clips.folder, table)
+        """K, the same in every clip."""
+        names = clips.names(split)
+        known = tracks.by_clip(table)
+        lacking = [name for name in names if name not in known]
+        if lacking:
+            raise InputError(clips.folder / TABLE, f"no tracks of clip {lacking[0]}", "make the tracks again")
+        self.frames = [clips.frames(name) for name in names]
+        self.xy = [known[name] for name in names]
+        whole = [_whole(xy, horizon + 1) for xy in self.xy]
+        self.index = np.array([(i, at) for i, ok in enumerate(whole) for at in np.flatnonzero(ok)], np.int64)
+        self.skipped = sum(int((~ok).sum()) for ok in whole)
+        """Windows left out because an object is lost in them."""
+        if not len(self.index):
+            reason = f"no {split} clip has {horizon + 1} consecutive frames with all objects tracked"
+            raise InputError(clips.folder / TABLE, reason, "lower `predict.horizon` or give longer clips")
+
+    def __len__(self) -> int:
+        return len(self.index)
+
+    def evenly(self, count: int) -> NDArray[np.int64]:
+        """At most `count` window numbers, spread over all clips."""
+        return np.unique(np.linspace(0, len(self) - 1, min(count, len(self))).round().astype(np.int64))
+
+    def batch(self, numbers: Sequence[int], symmetries: Sequence[Symmetry] | None = None) -> Window:
+        """The windows of those numbers, each turned and mirrored by its symmetry, on the device."""
+        T0, asked = self.seen_frames, self.horizon + 1 - self.seen_frames
+        cut = [self._cut(number) for number in numbers]
+        if symmetries is not None:
+            cut = [mirrored(*window, how) for window, how in zip(cut, symmetries, strict=True)]
+        xy = torch.from_numpy(np.stack([positions for _, positions in cut])).to(device())
+        times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
+        frames = as_input(np.stack([frames for frames, _ in cut]))
+        return Window(Seen(frames, xy[:, :T0], times[:, :T0]), times[:, -asked:], xy[:, T0:])
+
+    def draw(self, count: int, noise_px: float, generator: torch.Generator) -> Window:
+        """`count` random windows, randomly mirrored (and turned, if square), with noise on the seen positions."""
+        numbers = torch.randint(len(self), (count,), generator=generator).tolist()
+        flips = torch.randint(2, (count, 3), generator=generator).bool()
+        flips[:, 2] &= self.height == self.width
+        drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()])
+        noise = torch.randn(drawn.seen.xy.shape, generator=generator).to(device()) * noise_px
+        return Window(Seen(drawn.seen.frames, drawn.seen.xy + noise, drawn.seen.times), drawn.asked_times, drawn.target)
+
+    def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        clip, at = self.index[number]
+        stop = at + self.horizon + 1
+        return self.frames[clip][at : at + self.seen_frames], self.xy[clip][at:stop]
+
+
+def mirrored(
+    frames: NDArray[np.uint8], xy: NDArray[np.float32], how: Symmetry
+) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """Frames (T, H, W, 3) and positions (N, K, 2) px of the same scene, mirrored in x, in y, then x and y swapped."""
+    flip_x, flip_y, swap = how
+    height, width = frames.shape[1:3]
+    if flip_x:
+        frames, xy = frames[:, :, ::-1], np.stack([width - 1 - xy[..., 0], xy[..., 1]], axis=-1)
+    if flip_y:
+        frames, xy = frames[:, ::-1], np.stack([xy[..., 0], height - 1 - xy[..., 1]], axis=-1)
+    if swap:
+        frames, xy = frames.swapaxes(1, 2), xy[..., ::-1]
+    return frames, xy
+
+
+def as_input(frames: NDArray[np.uint8]) -> Tensor:
+    """(B, T, H, W, 3) uint8 to (B, T, 3, H, W) in [0, 1] on the device."""
+    return torch.from_numpy(frames).to(device()).permute(0, 1, 4, 2, 3).float() / 255
+
+
+def _whole(xy: NDArray[np.float32], length: int) -> NDArray[np.bool_]:
+    """For each start, whether `length` frames of xy (T, K, 2) from there on are all known."""
+    known = np.isfinite(xy.sum(axis=(1, 2)))
+    if len(known) < length:
+        return np.zeros(0, bool)
+    return np.logical_and.reduce(np.lib.stride_tricks.sliding_window_view(known, length), axis=1)

@@ -1,0 +1,67 @@
+"""What every predictor of motion is given, gives back, and is judged by while it learns."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import torch
+from torch import Tensor, nn
+
+from physpipe.core.params import Section
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a predictor may know; nothing of the frames that it is asked for."""
+
+    frames: Tensor
+    """(B, T0, 3, H, W) RGB in [0, 1]."""
+    xy: Tensor
+    """(B, T0, K, 2) pixels."""
+    times: Tensor
+    """(B, T0) frames since the first one seen."""
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """Where the objects will be."""
+
+    mean: Tensor
+    """(B, N, K, 2) pixels."""
+    cov: Tensor | None = None
+    """(B, N, K, 2, 2) square pixels, of probabilistic predictors only."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """Stretches of film with the answer, to learn from."""
+
+    seen: Seen
+    asked_times: Tensor
+    """(B, N) frames since the first one seen."""
+    target: Tensor
+    """(B, N, K, 2) pixels."""
+
+
+class Predictor(nn.Module, ABC):
+    """Forecasts positions from the first frames and positions of a stretch of film."""
+
+    Params: ClassVar[type[Section]]
+    """What configures it."""
+    seen_frames: ClassVar[int]
+    """Consecutive frames that it sees (T0)."""
+
+    def __init__(self, params: Section, objects: int):
+        """`objects`: K, the number of objects in every clip."""
+        super().__init__()
+        self.objects = objects
+
+    @abstractmethod
+    def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
+        """Positions at `asked_times` (B, N) frames since the first one seen."""
+
+    def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+        """Mean distance from the target in pixels; its square would be ruled by the few wildest windows."""
+        missed = self(batch.seen, batch.asked_times).mean - batch.target
+        distance = (missed.square().sum(-1) + 1e-6).sqrt()  # px^2 that keep the gradient finite at 0
+        return distance.mean(), {"train_last_px": distance[:, -1].mean().item()}

@@ -1,0 +1,81 @@
+"""Which figures the page's tables show, and the few that come first."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+from physpipe.report.paper import predictor_rows, tracker_rows
+from physpipe.report.run import Evidence, Row
+
+TRACKER_COLUMNS = {
+    "mean_px": "mean px",
+    "median_px": "median px",
+    "var_px2": "variance px²",
+    "p99_px": "99 % px",
+    "bias_px": "bias px",
+    "jitter_px": "jitter px",
+    "off_track": "off track",
+    "lost": "lost",
+    "swaps": "swapped",
+    "delta_avg": "δ avg",
+    "locked": "locked",
+}
+PREDICTOR_COLUMNS = {
+    "error_T_px": "at T px",
+    "error_2T_px": "at 2T px",
+    "error_4T_px": "at 4T px",
+    "ade_px": "ADE px",
+    "fde_px": "FDE px",
+    "skill_T": "skill at T",
+    "nll_nats": "NLL at T, nats",
+    "nll_bits": "NLL at T, bits",
+    "coverage_90": "90 % coverage",
+}
+HORIZONS = {"error_T_px": "T", "error_2T_px": "2T"}
+SUPERVISION_WORDS = {"tracks": "unsupervised tracks", "truth": "true positions"}
+
+
+def known_columns(rows: dict[str, Row], columns: dict[str, str]) -> dict[str, str]:
+    """Those of `columns` that some row has a figure for."""
+    return {key: heading for key, heading in columns.items() if any(row.get(key) is not None for row in rows.values())}
+
+
+class Headline(NamedTuple):
+    """One figure of ours beside the paper's, and beside standing still where that is a forecast too."""
+
+    dataset: str
+    simulated: bool
+    what: str
+    ours: Any
+    paper: Any
+    persistence: Any
+
+
+def headlines(every: Sequence[Evidence], predictor: str) -> list[Headline]:
+    """The first table of the page; `predictor` names the one whose errors it holds."""
+    return [
+        Headline(each.name, each.simulated, what, *values)
+        for each in every
+        for what, *values in _lines(each, predictor)
+    ]
+
+
+def _lines(evidence: Evidence, predictor: str) -> Iterator[tuple[str, Any, Any, Any]]:
+    if evidence.annotated:
+        yield from _of_tracker(tracker_rows(evidence))
+        yield from _of_predictor(predictor_rows(evidence), predictor)
+    else:
+        yield "no truth, so no error can be stated", None, None, None
+
+
+def _of_tracker(rows: dict[str, Row]) -> Iterator[tuple[str, Any, Any, Any]]:
+    ours = rows.get("unsupervised", {})
+    yield "unsupervised tracker, mean error in px", ours.get("mean_px"), ours.get("paper_mean_px"), None
+    yield "unsupervised tracker, 99 % of frames within px", ours.get("p99_px"), None, None
+
+
+def _of_predictor(blocks: dict[str, dict[str, Row]], predictor: str) -> Iterator[tuple[str, Any, Any, Any]]:
+    for supervision, rows in blocks.items():
+        ours, still = rows.get(predictor, {}), rows.get("persistence", {})
+        for key, horizon in HORIZONS.items() if ours else ():
+            what = f"{predictor} from {SUPERVISION_WORDS[supervision]}, error at {horizon} in px"
+            yield what, ours.get(key), ours.get(f"paper_{key}"), still.get(key)

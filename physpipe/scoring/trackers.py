@@ -1,0 +1,157 @@
+"""Figures per tracker from track tables and the truth, test split only."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from pydantic import Field
+
+from physpipe.core.ball import BallParams
+from physpipe.core.params import Section
+from physpipe.io import tracks
+from physpipe.io.clips import ClipSet
+from physpipe.metrics import trackers as metrics
+from physpipe.metrics.trackers import OtherMotionParams
+
+ERRORS = ["tracker", "clip", "object", "frame", "error_px"]
+
+
+class EvaluateTrackersParams(Section):
+    """What counts as off track, as a swap, as disturbed; and how sure the mean is."""
+
+    off_track_radii: float = Field(gt=0)
+    """Error, in radii of the object, beyond which a tracker is off its track."""
+    off_track_frames: int = Field(ge=1)
+    """Frames in a row after which a clip counts as off track."""
+    swap_frames: int = Field(ge=1)
+    """Frames in a row with exchanged objects after which a clip counts as swapped."""
+    bootstrap_resamples: int = Field(ge=1)
+    """Draws of clips behind the 95 % interval of the mean error."""
+    seed: int = Field(ge=0)
+    """Seed of those draws."""
+    other_motion: OtherMotionParams
+
+
+class Case(NamedTuple):
+    """One annotated test clip."""
+
+    clip: str
+    truth: NDArray[np.floating]
+    """(T, K, 2) pixels."""
+    disturbed: NDArray[np.bool_]
+    """(T,) frames counted apart, since something else moves in them."""
+    width: int
+    height: int
+
+
+def score_trackers(
+    clips: ClipSet,
+    truth: pd.DataFrame,
+    tables: Mapping[str, pd.DataFrame],
+    locked: Mapping[str, bool],
+    params: EvaluateTrackersParams,
+    ball: BallParams,
+) -> tuple[dict[str, dict[str, float | bool | None]], pd.DataFrame]:
+    """Figures per tracker, and one row per tracker, clip, object and frame with its error (NaN where lost).
+
+    `locked` is each tracker's own verdict on itself; null where it gives none. Without an annotated test clip every
+    figure is null and `clips` is 0.
+    """
+    cases = _cases(clips, truth, params.other_motion, ball.ball_radius_px)
+    figures: dict[str, dict[str, float | bool | None]] = {}
+    rows = []
+    for name, table in tables.items():
+        known = tracks.by_clip(table)
+        found = [_matched(known.get(case.clip), case) for case in cases]
+        errors = _errors(found, cases)
+        figures[name] = {**_figures(found, cases, errors, params, ball), "locked": locked.get(name)}
+        rows.append(errors.assign(tracker=name)[ERRORS])
+    return figures, pd.concat(rows, ignore_index=True)
+
+
+def _cases(clips: ClipSet, truth: pd.DataFrame, other: OtherMotionParams, radius_px: float) -> list[Case]:
+    """The annotated test clips; frames count as disturbed by the user's tags or, if there are none, by what moves."""
+    tags = truth.loc[truth["tag"] != ""] if "tag" in truth else truth.iloc[:0]
+    cases = []
+    for clip, xy in tracks.by_clip(truth).items():
+        if clips.split(clip) != "test":
+            continue
+        frames = clips.frames(clip)
+        if len(tags):
+            disturbed = np.isin(np.arange(len(xy)), tags.loc[tags["clip"] == clip, "frame"])
+        else:
+            disturbed = metrics.other_motion(frames, xy, radius_px, other)
+        cases.append(Case(clip, xy, disturbed, frames.shape[2], frames.shape[1]))
+    return cases
+
+
+def _matched(found: NDArray[np.floating] | None, case: Case) -> NDArray[np.floating]:
+    """(T, K, 2) tracks in the truth's order of objects; a clip without tracks is lost throughout."""
+    return np.full(case.truth.shape, np.nan) if found is None else metrics.match(found, case.truth)
+
+
+def _errors(found: list[NDArray[np.floating]], cases: list[Case]) -> pd.DataFrame:
+    """One row for each visible object: clip, object, frame, x and y offset, error_px, disturbed."""
+    parts = []
+    for xy, case in zip(found, cases, strict=True):
+        frame, obj = np.nonzero(np.isfinite(case.truth).all(axis=2))
+        offset = (xy - case.truth)[frame, obj].astype(np.float64)
+        columns = {"object": obj, "frame": frame, "x": offset[:, 0], "y": offset[:, 1]}
+        parts.append(pd.DataFrame({"clip": case.clip, **columns, "disturbed": case.disturbed[frame]}))
+    if not parts:
+        return pd.DataFrame(columns=["clip", "object", "frame", "x", "y", "disturbed", "error_px"], dtype=float)
+    table = pd.concat(parts).sort_values(tracks.KEY, ignore_index=True)
+    return table.assign(error_px=np.hypot(table["x"], table["y"]))
+
+
+def _figures(
+    found: list[NDArray[np.floating]],
+    cases: list[Case],
+    errors: pd.DataFrame,
+    params: EvaluateTrackersParams,
+    ball: BallParams,
+) -> dict[str, float]:
+    seen = errors.dropna()
+    per_clip = seen.groupby("clip")["error_px"].agg(["sum", "size"])
+    low, high = metrics.bootstrap_interval(
+        per_clip["sum"].to_numpy(float), per_clip["size"].to_numpy(float), params.bootstrap_resamples, params.seed
+    )
+    pairs = list(zip(found, cases, strict=True))
+    limit_px = params.off_track_radii * ball.ball_radius_px
+    off_track = [
+        metrics.off_track(xy[:, k], case.truth[:, k], limit_px, params.off_track_frames)
+        for xy, case in pairs
+        for k in range(case.truth.shape[1])
+    ]
+    swaps = [
+        metrics.swapped(xy, case.truth, 2 * ball.ball_radius_px, params.swap_frames)
+        for xy, case in pairs
+        if case.truth.shape[1] > 1
+    ]
+    return {
+        "clips": len(cases),
+        "frames": len(errors),
+        **metrics.error_figures(seen[["x", "y"]].to_numpy(float)),
+        "mean_px_low": low,
+        "mean_px_high": high,
+        "lost": _mean(errors["error_px"].isna()),
+        "delta_avg": _mean([metrics.delta_avg(xy, case.truth, case.width, case.height) for xy, case in pairs]),
+        "off_track": _mean(off_track),
+        "swaps": _mean(swaps),
+        "disturbed": _mean(errors["disturbed"]),
+        **_apart(seen, "alone", seen["disturbed"] == 0),
+        **_apart(seen, "disturbed", seen["disturbed"] == 1),
+    }
+
+
+def _apart(seen: pd.DataFrame, name: str, which: pd.Series) -> dict[str, float]:
+    """Mean, median and 99th percentile of some of the frames, named `mean_px_<name>` and so on."""
+    figures = metrics.error_figures(seen.loc[which, ["x", "y"]].to_numpy(float))
+    return {f"{key}_{name}": figures[key] for key in ("mean_px", "median_px", "p99_px")}
+
+
+def _mean(values: list[float] | list[bool] | pd.Series) -> float:
+    """The mean, or NaN of nothing."""
+    return float(np.mean(values)) if len(values) else np.nan

@@ -1,0 +1,58 @@
+"""The tracker's losses: causality, equivariance (paper section 3.1), and the motion warm start (ours)."""
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from physpipe.tracknet.discriminator import MOMENTS, Discriminator, shuffles
+
+
+def causality(judge: Discriminator, xy: Tensor, negatives: int, generator: torch.Generator) -> Tensor:
+    """L_disc of (B, 5, 2) positions; the natural order and its shuffles weigh one half each.
+
+    Scoring several shuffles of the same positions has the expectation of the paper's 50/50 coin and far less variance.
+    """
+    orders = shuffles(negatives, len(xy), generator).to(xy.device)
+    shuffled = xy[torch.arange(len(xy), device=xy.device)[:, None, None], orders]
+    return 0.5 * (F.softplus(-judge(xy)).mean() + F.softplus(judge(shuffled)).mean())
+
+
+def causality_by_coin(judge: Discriminator, xy: Tensor, generator: torch.Generator) -> Tensor:
+    """L_disc as the paper states it: each (B, 5, 2) trajectory is shuffled with probability one half."""
+    orders = shuffles(1, len(xy), generator)[:, 0]
+    heads = torch.rand(len(xy), generator=generator) < 0.5
+    orders = torch.where(heads[:, None], torch.arange(MOMENTS), orders).to(xy.device)
+    logits = judge(xy.gather(1, orders[..., None].expand(-1, -1, 2)))
+    return F.softplus(torch.where(heads.to(xy.device), -logits, logits)).mean()
+
+
+def turned(frames: Tensor, turns: int, mirrored: bool) -> Tensor:
+    """(B, 3, H, W) frames mirrored left-right if asked, then turned by `turns` quarter turns."""
+    return torch.rot90(frames.flip(-1) if mirrored else frames, turns, (-2, -1))
+
+
+def turned_back(xy: Tensor, turns: int, mirrored: bool, height: int, width: int) -> Tensor:
+    """(..., 2) pixels of a `turned` frame as pixels of the frame before it, which was height x width."""
+    h, w = (height, width) if turns % 2 == 0 else (width, height)
+    for _ in range(turns % 4):
+        x, y = xy.unbind(-1)
+        xy = torch.stack([h - 1 - y, x], -1)
+        h, w = w, h
+    return torch.stack([w - 1 - xy[..., 0], xy[..., 1]], -1) if mirrored else xy
+
+
+def motion_target(frames: Tensor, background: Tensor, stride: int) -> Tensor:
+    """(B, h, w) distribution of where (B, 3, H, W) frames differ from their clip's background.
+
+    Squared residuals less their median over the frame (noise, light), so that only what stands out is left.
+    """
+    residual = (frames - background).square().mean(1, keepdim=True)
+    pooled = F.avg_pool2d(residual, stride)[:, 0]
+    floor = pooled.flatten(1).quantile(0.9, dim=1)[:, None, None]
+    above = (pooled - floor).clamp_min(0).square()
+    return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
+
+
+def motion_cross_entropy(logits: Tensor, target: Tensor) -> Tensor:
+    """Mean over the batch of the cross-entropy between `target` and the softmax of `logits`, both (B, h, w)."""
+    return -(target * logits.flatten(1).log_softmax(1).view(logits.shape)).flatten(1).sum(1).mean()

@@ -1,0 +1,117 @@
+"""What can be known of a detector without labels: the signals behind the choice of a start and `locked`."""
+
+from dataclasses import dataclass
+
+import torch
+from pydantic import Field
+from torch import Tensor
+
+from physpipe.core.params import Section
+from physpipe.tracknet.discriminator import shuffles
+from physpipe.tracknet.heatmap import distribution, entropy, expected_position
+from physpipe.tracknet.losses import causality, motion_target, turned, turned_back
+from physpipe.tracknet.model import Moments, TrackNet, masked
+
+
+class SignalParams(Section):
+    """How the signals are read and weighed."""
+
+    noise_px: float = Field(ge=0)
+    """Noise on the positions that the discriminator judges, the same for every start."""
+    batches: int = Field(ge=1)
+    """Held-out batches to read them from."""
+    siamese_weight: float = Field(ge=0)
+    """Nats that a pixel of equivariance error costs in the score."""
+    near_px: float = Field(gt=0)
+    """Radius around the detection within which motion counts as its own."""
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Means over held-out batches."""
+
+    order_nats: float
+    """The discriminator's loss; a coin has 0.693."""
+    order_accuracy: float
+    """Share of natural and shuffled orders told apart, each weighing half; a coin has 0.5."""
+    siamese_px: float
+    """Root mean square error of equivariance to quarter turns."""
+    entropy_nats: float
+    """Entropy of the heat map; log of the number of cells when flat."""
+    motion_share: float
+    """Share of the frame's motion residual that lies near the detection."""
+    extent_px: float
+    """Median root mean square distance of a clip's detections from their mean: 0 for a static spot."""
+
+    def score(self, params: SignalParams) -> float:
+        """Lower is better; chooses among starts and checkpoints."""
+        return self.order_nats + params.siamese_weight * self.siamese_px
+
+
+class LockParams(Section):
+    """Bounds that all signals must keep for `locked: true`."""
+
+    order_accuracy: float = Field(ge=0, le=1)
+    """Smallest share of orders told apart."""
+    siamese_px: float = Field(gt=0)
+    """Largest equivariance error."""
+    entropy_nats: float = Field(gt=0)
+    """Largest entropy of the heat map."""
+    motion_share: float = Field(ge=0, le=1)
+    """Smallest share of motion near the detection."""
+    extent_px: float = Field(ge=0)
+    """Smallest extent of a trajectory."""
+
+
+def locked(signals: Signals, bounds: LockParams) -> bool:
+    """Whether the detector follows something that moves, judged without labels."""
+    return (
+        signals.order_accuracy >= bounds.order_accuracy
+        and signals.siamese_px <= bounds.siamese_px
+        and signals.entropy_nats <= bounds.entropy_nats
+        and signals.motion_share >= bounds.motion_share
+        and signals.extent_px >= bounds.extent_px
+    )
+
+
+@torch.no_grad()
+def read_signals(net: TrackNet, batches: list[Moments], params: SignalParams, generator: torch.Generator) -> Signals:
+    """Signals of `net`, which must be in evaluation mode, on held-out batches."""
+    rows = [_of_batch(net, each, params, generator) for each in batches]
+    mean = {name: float(torch.stack([row[name] for row in rows]).mean()) for name in rows[0]}
+    mean["siamese_px"] = mean.pop("siamese_px2") ** 0.5
+    return Signals(**mean)
+
+
+def _of_batch(net: TrackNet, batch: Moments, params: SignalParams, generator: torch.Generator) -> dict[str, Tensor]:
+    stride, frames = net.detector.stride, batch.frames.flatten(0, 1)
+    heat = distribution(masked(net.detector(frames), batch.ignored))
+    xy = expected_position(heat, stride)
+    windows = xy.unflatten(0, batch.frames.shape[:2])
+    noisy = windows + params.noise_px * torch.randn(windows.shape, generator=generator).to(xy)
+    other = None if batch.ignored is None else turned(batch.ignored.flatten(0, 1)[:, None], 1, False)
+    seen = expected_position(distribution(masked(net.detector(turned(frames, 1, False)), other)), stride)
+    back = turned_back(seen, 1, False, *frames.shape[-2:])
+    return {
+        "order_nats": causality(net.judge, noisy, 8, generator),
+        "order_accuracy": _accuracy(net, noisy, generator),
+        "siamese_px2": (back - xy).square().sum(1).mean(),
+        "entropy_nats": entropy(heat).mean(),
+        "motion_share": _motion_share(batch, xy, stride, params.near_px),
+        "extent_px": (windows - windows.mean(1, keepdim=True)).square().sum(-1).mean(1).sqrt().median(),
+    }
+
+
+def _accuracy(net: TrackNet, xy: Tensor, generator: torch.Generator) -> Tensor:
+    orders = shuffles(8, len(xy), generator).to(xy.device)
+    shuffled = xy[torch.arange(len(xy), device=xy.device)[:, None, None], orders]
+    return 0.5 * ((net.judge(xy) > 0).float().mean() + (net.judge(shuffled) < 0).float().mean())
+
+
+def _motion_share(batch: Moments, xy: Tensor, stride: int, near_px: float) -> Tensor:
+    background = batch.background.repeat_interleave(batch.frames.shape[1], 0)
+    target = motion_target(batch.frames.flatten(0, 1), background, stride)
+    rows, columns = torch.meshgrid(*(torch.arange(size) for size in target.shape[1:]), indexing="ij")
+    cells = torch.stack([columns, rows], -1).to(xy) * stride + (stride - 1) / 2
+    near = (cells - xy[:, None, None]).square().sum(-1) <= near_px**2
+    return (target * near).flatten(1).sum(1).mean()

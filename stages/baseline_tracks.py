@@ -1,0 +1,25 @@
+"""Tracks of every baseline tracker, test split only."""
+
+from pathlib import Path
+
+from physpipe.core.ball import BallParams
+from physpipe.core.command import run
+from physpipe.core.params import read
+from physpipe.io import annotations, tracks
+from physpipe.io.clips import ClipSet
+from physpipe.trackers.baselines import BaselineParams, baseline_tracks
+from physpipe.trackers.template import TemplateParams
+
+
+def main(name: str, clips: Path, annotated: Path, truth: Path, out: Path) -> None:
+    """Writes a folder with a track table for each baseline."""
+    params, template = read("baselines", BaselineParams), read("ground_truth", TemplateParams)
+    ball = read(f"datasets.{name}.evaluate", BallParams)
+    film = ClipSet(clips)
+    given = annotations.load(annotated, film)
+    tables = baseline_tracks(film, given, tracks.load(truth), params, template, ball.ball_radius_px)
+    tracks.save_folder(out, tables, "baseline_tracks", film)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,25 @@
+"""Errors of every tracker against the truth, test split only."""
+
+from pathlib import Path
+
+from physpipe.core.ball import BallParams
+from physpipe.core.command import run
+from physpipe.core.params import read
+from physpipe.io import results, tracks
+from physpipe.io.clips import ClipSet
+from physpipe.scoring.trackers import EvaluateTrackersParams, score_trackers
+
+
+def main(name: str, clips: Path, truth: Path, found: Path, verdict: Path, baselines: Path, out: Path) -> None:
+    """Writes figures per tracker to `out`, and every frame's error to `tracker_errors.csv` beside it."""
+    params = read("evaluate_trackers", EvaluateTrackersParams)
+    ball = read(f"datasets.{name}.evaluate", BallParams)
+    tables = {"unsupervised": tracks.load(found), **tracks.load_folder(baselines)}
+    locked = {"unsupervised": results.load_json(verdict)["locked"]}
+    figures, errors = score_trackers(ClipSet(clips), tracks.load(truth), tables, locked, params, ball)
+    results.save_json(out, figures)
+    results.save_csv(out.parent / "tracker_errors.csv", errors)
+
+
+if __name__ == "__main__":
+    run(main)

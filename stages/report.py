@@ -1,0 +1,35 @@
+"""Gather every data set's results into the metrics files and one page."""
+
+from pathlib import Path
+
+from physpipe.core import params
+from physpipe.core.command import run
+from physpipe.core.determinism import ComputeParams
+from physpipe.report.page import ReportParams, write_page
+from physpipe.report.run import RunParams, Sources, gather
+from physpipe.report.tables import save_metrics
+
+
+def main(
+    clips: Path,
+    truth: Path,
+    tracks: Path,
+    scores: Path,
+    forecasts: Path,
+    trackers: Path,
+    predictors: Path,
+    metrics: Path,
+    page: Path,
+) -> None:
+    """Writes `metrics/*.json`, `metrics/*.csv` and the folder `page`; every other path is read."""
+    ran = params.read("run", RunParams)
+    shown = params.read("report", ReportParams)
+    compute = params.read("compute", ComputeParams)
+    sources = Sources(clips, truth, tracks, scores, forecasts, trackers, predictors)
+    every = [gather(name, ran, sources, shown.predictor) for name in ran.datasets]
+    save_metrics(metrics, every, shown.predictor)
+    write_page(page, every, compute.seed, shown)
+
+
+if __name__ == "__main__":
+    run(main)

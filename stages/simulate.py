@@ -1,0 +1,17 @@
+"""Film a simulated data set: videos as a camera would leave them, and the exact truth beside them."""
+
+from pathlib import Path
+
+from physpipe.core import params
+from physpipe.core.command import run
+from physpipe.io import recordings
+from physpipe.scenes.worlds import WorldParams, simulate
+
+
+def main(name: str, raw: Path, annotations: Path) -> None:
+    world = params.read(f"datasets.{name}.simulate", WorldParams)
+    recordings.save(raw, annotations, simulate(world, name))
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,156 @@
+"""The tracker learns a small world without labels, owns up where nothing moves, and survives a kill."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+import worlds
+
+from physpipe.core.determinism import ComputeParams
+from physpipe.core.errors import InputError
+from physpipe.io import results
+from physpipe.learning import lessons, tracking
+from physpipe.learning.moments import MomentParams
+from physpipe.learning.tracking import RecipeParams, TrackerParams, learn_first, learn_others
+from physpipe.learning.training import FitParams
+from physpipe.tracknet.detector import DetectorParams
+from physpipe.tracknet.discriminator import DiscriminatorParams
+from physpipe.tracknet.model import BottleneckParams, LossParams, TrackNetParams
+from physpipe.tracknet.signals import LockParams, SignalParams, locked
+from physpipe.trackers import detectors
+from physpipe.trackers.learned import LearnedTracker, ReadoutParams
+from physpipe.trackers.sequential import MaskParams
+
+COMPUTE = ComputeParams(seed=0, threads=1)
+
+
+def params(steps: int, warm: int, rest: int = 40) -> TrackerParams:
+    fit = FitParams(
+        steps=steps,
+        batch_size=8,
+        learning_rate=5e-3,
+        final_rate=0.1,
+        warmup_steps=5,
+        weight_decay=0,
+        clip_norm=1,
+        valid_every=20,
+        patience=100,
+        precision="float32",
+    )
+    net = TrackNetParams(
+        detector=DetectorParams(width=8, layers=1, stride=4),
+        discriminator=DiscriminatorParams(width=32, shape_only=True),
+        losses=LossParams(causality=1, entropy=0.01, equivariance=0.001),
+        bottleneck=BottleneckParams(start_px=0.02, end_px=0.4, growth=1.05, winning=0.5),
+        negatives=8,
+        turned_share=0.4,
+        mirrored=True,
+        flicker=0.1,
+        warm_start_steps=warm,
+    )
+    recipe = RecipeParams(
+        net=net,
+        moments=MomentParams(strides=[1, 2], background_frames=15),
+        starts=2,
+        start=fit,
+        rest=fit.model_copy(update={"steps": rest}),
+    )
+    return TrackerParams(
+        recipe="small",
+        recipes={"small": recipe},
+        signals=SignalParams(noise_px=0.4, batches=3, siamese_weight=0.1, near_px=6),
+        lock=LockParams(order_accuracy=0.8, siamese_px=3, entropy_nats=3.5, motion_share=0.3, extent_px=0.5),
+        readout=ReadoutParams(window_px=9, batch_frames=32),
+        mask=MaskParams(radius_px=8),
+    )
+
+
+def orbits(folder, colours=(worlds.RED,)):
+    """Ten clips of one or two balls half an orbit apart, and their truth (T, K, 2)."""
+    phases = [0.6 * number for number in range(10)]
+    truth = [
+        np.stack([worlds.orbit(24, phase + math.pi * each) for each in range(len(colours))], axis=1) for phase in phases
+    ]
+    films = [worlds.draw(xy, list(colours), seed) for seed, xy in enumerate(truth)]
+    clips = worlds.save_clips(folder, films)
+    return clips, dict(zip(clips.names(), truth, strict=True))
+
+
+def test_a_rolling_ball_is_found_without_labels_and_the_verdict_says_so(tmp_path):
+    clips, truth = orbits(tmp_path / "clips")
+    learned = learn_first(clips, params(steps=100, warm=60, rest=100), COMPUTE, tmp_path / "scratch")
+    tracker = LearnedTracker(learned.net.detector, params(1, 1).readout)
+    errors = [np.linalg.norm(tracker.track(clips.frames(n)).xy - truth[n][:, 0], axis=1) for n in clips.names("test")]
+    assert np.mean(errors) < 1.5  # pixels, of a ball 6 px wide and cells 4 px wide
+    assert locked(learned.signals, params(1, 1).lock)
+
+
+def test_two_balls_are_found_one_after_the_other(tmp_path):
+    clips, truth = orbits(tmp_path / "clips", (worlds.RED, worlds.BLUE))
+    recipe = params(steps=100, warm=60, rest=100)
+    first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    others = learn_others(clips, first.net, 2, recipe, COMPUTE, tmp_path / "scratch")
+    tracker = detectors.together([first.net, *(each.net for each in others)], recipe.readout, recipe.mask)
+    for name in clips.names("test"):
+        found = np.stack([each.xy for each in tracker.track_all(clips.frames(name))], axis=1)
+        apart = np.linalg.norm(found[:, :, None] - truth[name][:, None], axis=-1).mean(0)  # (found, true) pixels
+        assert min(apart[0, 0] + apart[1, 1], apart[0, 1] + apart[1, 0]) / 2 < 2.5
+
+
+def test_a_still_film_that_only_gets_brighter_is_not_locked_on(tmp_path):
+    rng = np.random.default_rng(0)
+    ground = rng.uniform(60, 120, (worlds.HEIGHT, worlds.WIDTH, 3))
+    ramp = np.linspace(0.8, 1.3, 24)[:, None, None, None]
+    films = [(ground * ramp + rng.normal(0, 2, (24, *ground.shape))).clip(0, 255).astype(np.uint8) for _ in range(10)]
+    clips = worlds.save_clips(tmp_path / "clips", films)
+    recipe = params(steps=60, warm=30)
+    learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    assert not locked(learned.signals, recipe.lock)
+
+
+def test_a_killed_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
+    clips, _ = orbits(tmp_path / "clips")
+    recipe = params(steps=40, warm=20)
+    whole = learn_first(clips, recipe, COMPUTE, tmp_path / "whole")
+
+    class Killed(BaseException):
+        pass
+
+    draws = iter(range(70))
+
+    def dies(self, generator, draw=tracking.MomentSampler.__call__):
+        if next(draws, None) is None:
+            raise Killed
+        return draw(self, generator)
+
+    with monkeypatch.context() as patch, pytest.raises(Killed):
+        patch.setattr(tracking.MomentSampler, "__call__", dies)
+        learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
+    resumed = learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
+    for name, value in whole.net.state_dict().items():
+        assert torch.equal(value, resumed.net.state_dict()[name]), name
+
+
+def test_what_is_saved_is_what_was_learned(tmp_path):
+    clips, _ = orbits(tmp_path / "clips")
+    recipe = params(steps=5, warm=2, rest=5)
+    learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    lessons.save_first(tmp_path / "first", clips, learned, recipe.lock)
+    lessons.save_all(tmp_path / "all", clips, tmp_path / "first", [learned], recipe.lock)
+    assert len(detectors.load(tmp_path / "first" / detectors.WEIGHTS)) == 1
+    pair = detectors.load(tmp_path / "all" / detectors.WEIGHTS)
+    name = clips.names("test")[0]
+    table = detectors.track_table(clips, detectors.together(pair, recipe.readout, MaskParams(radius_px=8)))
+    alone = LearnedTracker(learned.net.detector, recipe.readout).track(clips.frames(name))
+    mine = table[(table["clip"] == name) & (table["object"] == 0)]
+    np.testing.assert_array_equal(mine[["x", "y"]].to_numpy(), alone.xy)
+    verdict = results.load_json(tmp_path / "all" / "verdict.json")
+    assert verdict["locked"] == all(each["locked"] for each in verdict["objects"])
+    assert len(verdict["objects"]) == 2
+
+
+def test_an_unknown_recipe_is_refused_with_the_known_ones(tmp_path):
+    clips, _ = orbits(tmp_path / "clips")
+    with pytest.raises(InputError, match=r"no recipe `lok`.*small"):
+        learn_first(clips, params(1, 1).model_copy(update={"recipe": "lok"}), COMPUTE, tmp_path)

@@ -1,0 +1,238 @@
+"""A made-up project: `bowls` with truth and a locked tracker, `film` with neither, and files of other runs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pandas as pd
+import pytest
+
+from physpipe.core.geometry import Geometry
+from physpipe.io import clips, forecasts, results, tracks
+from physpipe.predictors import BASELINES
+from physpipe.report.film import FilmParams
+from physpipe.report.page import ReportParams
+from physpipe.report.run import Evidence, RunParams, Sources, gather
+
+
+@dataclass(frozen=True)
+class World:
+    """What the made-up data sets are like."""
+
+    rate: float = 60.0
+    """Frames a second."""
+    off_px: float = 1.5
+    """Distance of the track from the truth, along x."""
+    seen: int = 4
+    """Frames that the predictors see."""
+    horizon: int = 5
+    """T of the predictors, which forecast to 4 T."""
+    height: int = 40
+    width: int = 56
+    frames: int = 24
+    trackers: tuple[str, ...] = ("unsupervised", "lucas_kanade", "centre")
+    learned: tuple[str, ...] = ("dispnet", "probnet")
+
+
+@dataclass(frozen=True)
+class Project:
+    """The made-up project's folders and params."""
+
+    world: World
+    root: Path
+    sources: Sources
+    run: RunParams
+    shown: ReportParams
+
+    def evidence(self, name: str) -> Evidence:
+        return gather(name, self.run, self.sources, self.shown.predictor)
+
+    def every(self) -> list[Evidence]:
+        return [self.evidence(name) for name in self.run.datasets]
+
+
+def motion(world: World, clip: int, K: int) -> np.ndarray:
+    """(T, K, 2) pixels: every object circles the frame's centre, each clip from another angle."""
+    angle = np.arange(world.frames)[:, None] * 0.15 + np.arange(K) * np.pi + clip
+    reach = np.array([world.width, world.height]) * 0.3
+    centre = np.array([world.width, world.height]) / 2
+    return centre + reach * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def _clip(world: World, name: str, split: clips.Split, xy: np.ndarray) -> clips.Clip:
+    rng = np.random.default_rng(1)
+    frames = np.tile(rng.integers(70, 110, (world.height, world.width, 3), dtype=np.uint8), (world.frames, 1, 1, 1))
+    for frame, spots in zip(frames, xy, strict=True):
+        for x, y in spots:
+            cv2.circle(frame, (round(x), round(y)), 3, (200, 40, 40), -1, cv2.LINE_AA)
+    T = world.frames
+    times = np.arange(T) / world.rate
+    geometry = Geometry(0, 0, world.width, world.height, world.width, world.height)
+    status = np.full(T, "ok")
+    return clips.Clip(name, split, "made_up.mp4", geometry, frames, times, np.arange(T, dtype=np.int32), times, status)
+
+
+def _data_set(sources: Sources, world: World, name: str, K: int, annotated: bool, locked: bool) -> None:
+    splits: tuple[clips.Split, ...] = ("train", "train", "valid", "test", "test")
+    names = [f"{name}_{index:03d}" for index in range(len(splits))]
+    paths = {clip: motion(world, index, K) for index, clip in enumerate(names)}
+    clips.save(
+        sources.clips / name,
+        (_clip(world, each, split, paths[each]) for each, split in zip(names, splits, strict=True)),
+    )
+    clip_set = clips.ClipSet(sources.clips / name)
+    tables: dict[str, list[pd.DataFrame]] = {"truth": [tracks.empty()], "track": []}
+    for clip, xy in paths.items():
+        score = np.full(xy.shape[:2], 0.9)
+        score[10:14] = 0.2 if clip == names[0] else 0.8
+        times = clip_set.times_s(clip)
+        if annotated:
+            tables["truth"].append(tracks.rows(clip, times, xy, np.ones(xy.shape[:2]), "exact"))
+        tables["track"].append(tracks.rows(clip, times, xy + np.array([world.off_px, 0]), score))
+    tracks.save(sources.truth / f"{name}.parquet", pd.concat(tables["truth"]), "made up", clip_set)
+    tracks.save(sources.tracks / f"{name}.parquet", pd.concat(tables["track"]), "made up", clip_set)
+    _learning(sources, name, world, K, locked)
+    _scores(sources.scores / name, name, world, annotated, locked)
+    for number, predictor in enumerate(world.learned):
+        path = sources.forecasts / name / "tracks" / f"{predictor}.parquet"
+        _forecast(path, world, {clip: paths[clip] for clip in names[3:]}, number + 1.0)
+
+
+def _forecast(path: Path, world: World, paths: dict[str, np.ndarray], drift_px: float) -> None:
+    """A forecast that leaves the truth by `drift_px` a frame along y, with a spread that grows as it does."""
+    parts = []
+    for clip, xy in paths.items():
+        T, K = xy.shape[:2]
+        frame, number = np.meshgrid(np.arange(world.seen, T), np.arange(K), indexing="ij")
+        ahead = (frame - world.seen + 1).ravel()
+        spread = (0.4 * ahead) ** 2 + 1.0
+        spots = xy[world.seen :].reshape(-1, 2)
+        columns = {
+            "clip": clip,
+            "object": number.ravel(),
+            "frame": frame.ravel(),
+            "x": spots[:, 0],
+            "y": spots[:, 1] + drift_px * ahead * 0.3,
+        }
+        parts.append(pd.DataFrame({**columns, "cov_xx": spread, "cov_xy": 0.3 * spread, "cov_yy": spread}))
+    forecasts.save(path, pd.concat(parts), "made up", world.seen, world.horizon)
+
+
+def _learning(sources: Sources, name: str, world: World, K: int, locked: bool) -> None:
+    step = np.arange(0, 3000, 5)
+    fall = np.exp(-step / 800)
+    curve = pd.DataFrame({"step": step, "phase": "start 0", "disc": 0.1 + 0.6 * fall, "entropy_nats": 1 + 5 * fall})
+    both = pd.concat([curve, curve.assign(phase="rest", disc=0.3 * fall)])
+    results.save_csv(sources.trackers / name / "first" / "curve.csv", both)
+    results.save_csv(sources.trackers / name / "all" / "curve.csv", curve.assign(phase="object 1") if K > 1 else both)
+    heat = np.uint8(255 * np.random.default_rng(2).random((20, 90)))
+    cv2.imwrite(str(sources.trackers / name / "first" / "heatmaps.png"), heat)
+    signals = [{"object": 0, "entropy_nats": 1.2345, "locked": locked}]
+    verdict = {"locked": locked, "objects": signals}
+    results.save_json(sources.trackers / name / "all" / "verdict.json", verdict)
+    fitted = pd.DataFrame({"step": step, "train": 30 * fall + 1, "valid": 32 * fall + 2})
+    for supervision in ("tracks", "truth"):
+        for predictor in (*world.learned, "vin"):
+            results.save_csv(sources.predictors / name / supervision / predictor / "curve.csv", fitted)
+
+
+def _scores(folder: Path, name: str, world: World, annotated: bool, locked: bool) -> None:
+    """Scores in which every number tells where it came from; `vin` is left from another run."""
+    rng = np.random.default_rng(3)
+    trackers, errors = {}, []
+    for number, tracker in enumerate(world.trackers if annotated else ()):
+        error = np.abs(rng.normal(world.off_px + number, 0.4, 300))
+        error[: 20 * number] = np.nan
+        errors.append(
+            pd.DataFrame(
+                {"tracker": tracker, "clip": f"{name}_003", "object": 0, "frame": np.arange(300), "error_px": error}
+            )
+        )
+        mean = float(np.nanmean(error))
+        trackers[tracker] = {
+            "mean_px": mean,
+            "mean_px_low": mean - 0.1,
+            "mean_px_high": mean + 0.1,
+            "var_px2": float(np.nanvar(error)),
+        }
+        trackers[tracker] |= {"p99_px": float(np.nanquantile(error, 0.99)), "off_track": 0.0, "lost": 0.1 * number}
+        trackers[tracker] |= {"locked": locked if tracker == "unsupervised" else None, "clips": 2, "frames": 300}
+    empty = pd.DataFrame(columns=["tracker", "clip", "object", "frame", "error_px"])
+    results.save_json(folder / "trackers.json", trackers)
+    results.save_csv(folder / "tracker_errors.csv", pd.concat([empty, *errors]))
+    predictors: dict[str, dict] = {
+        "calibration": {"linear_T_px": 19.0, "linear_2T_px": 65.0, "quadratic_T_px": 12.0, "quadratic_2T_px": 90.0}
+        if annotated
+        else {}
+    }
+    curves = [pd.DataFrame(columns=["supervision", "predictor", "frame", "error_px"])]
+    frame = np.arange(1, world.frames)
+    for supervision in ("tracks", "truth") if annotated else ():
+        predictors[supervision] = {}
+        for number, predictor in enumerate(dict.fromkeys([*BASELINES, *world.learned, "vin"])):
+            size = 40.0 if predictor == "persistence" else 2.0 + number + len(supervision) / 100
+            row = {
+                "error_T_px": size,
+                "error_T_px_low": size * 0.9,
+                "error_T_px_high": size * 1.1,
+                "error_2T_px": 2 * size,
+            }
+            row |= {
+                "error_4T_px": 4 * size,
+                "skill_T": 1 - size / 40,
+                "coverage_90": 0.88 if predictor == "probnet" else None,
+            }
+            predictors[supervision][predictor] = row
+            error_px = size * frame / world.frames
+            curves.append(
+                pd.DataFrame(
+                    {
+                        "supervision": supervision,
+                        "predictor": predictor,
+                        "frame": frame,
+                        "error_px": error_px,
+                    }
+                )
+            )
+    results.save_json(folder / "predictors.json", predictors)
+    results.save_csv(folder / "horizons.csv", pd.concat(curves))
+
+
+def build(root: Path, world: World) -> Project:
+    """Writes all that the report reads, of two data sets that ran and one, `old`, that did not."""
+    folders = ("clips", "truth", "tracks", "scores", "forecasts", "tracker", "predictors")
+    sources = Sources(*(root / "data" / folder for folder in folders))
+    _data_set(sources, world, "bowls", K=1, annotated=True, locked=True)
+    _data_set(sources, world, "film", K=2, annotated=False, locked=False)
+    _data_set(sources, world, "old", K=1, annotated=True, locked=True)
+    run = RunParams(
+        datasets=["bowls", "film"], simulated=["bowls"], learned=list(world.learned), supervised=["dispnet"]
+    )
+    film = FilmParams(clips=2, fps_at_most=30, kilobytes=900)
+    shown = ReportParams(
+        predictor="dispnet",
+        clips_shown=2,
+        frames_shown=3,
+        upscale=3,
+        trail_frames=8,
+        spans_shown=3,
+        span_frames=4,
+        film=film,
+    )
+    return Project(world, root, sources, run, shown)
+
+
+@pytest.fixture(scope="session")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    return build(tmp_path_factory.mktemp("project"), World())
+
+
+@pytest.fixture(scope="session")
+def bowls(project: Project) -> Evidence:
+    return project.evidence("bowls")
+
+
+@pytest.fixture(scope="session")
+def film(project: Project) -> Evidence:
+    return project.evidence("film")

@@ -1,0 +1,132 @@
+"""The page stands alone, and its tables hold the metrics' numbers."""
+
+import base64
+import re
+from html.parser import HTMLParser
+
+import cv2
+import numpy as np
+import pytest
+
+from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS
+from physpipe.report.page import write_page
+from physpipe.report.paper import predictor_rows, tracker_rows
+
+VOID = {"meta", "link", "img", "br"}
+
+
+class Page(HTMLParser):
+    """Sources, alarms, cells by section and row, and whether tags nest."""
+
+    def __init__(self, html: str):
+        super().__init__()
+        self.sources: list[str] = []
+        self.alarms = 0
+        self.numbers: dict[str, dict[str, list[str]]] = {}
+        self.text: dict[str, str] = {}
+        self._open: list[str] = []
+        self._section = self._row = ""
+        self.feed(html)
+        assert self._open == []
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        if tag not in VOID:
+            self._open.append(tag)
+        self.sources += [given[key] for key in ("src", "href") if key in given]
+        self.alarms += given.get("class") == "alarm"
+        if tag == "section":
+            self._section = given["id"]
+        if tag == "tr":
+            self._row = f"{len(self.numbers.get(self._section, {}))} {given.get('class', '')}".strip()
+        if tag == "data":
+            self.numbers.setdefault(self._section, {}).setdefault(self._row, []).append(given["value"])
+
+    def handle_endtag(self, tag):
+        assert self._open.pop() == tag
+        if tag == "section":
+            self._section = ""
+
+    def handle_data(self, data):
+        self.text[self._section] = self.text.get(self._section, "") + data
+
+
+@pytest.fixture(scope="module")
+def folder(project, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "report"
+    write_page(out, project.every(), 7, project.shown)
+    return out
+
+
+@pytest.fixture(scope="module")
+def html(folder) -> str:
+    return (folder / "index.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def page(html) -> Page:
+    return Page(html)
+
+
+def test_page_fetches_nothing(html, page):
+    assert all(source.startswith(("data:", "#")) for source in page.sources)
+    markup = re.sub(r"data:[a-z0-9/]+;base64,[A-Za-z0-9+/=]+", "", html)
+    assert not re.search(r"https?://|url\(|@import|<script", markup)
+
+
+def test_every_picture_decodes_and_the_films_are_inside(page, folder):
+    kinds = []
+    for source in page.sources:
+        if source.startswith("data:") and source != "data:,":
+            kind, content = source.split(";base64,")
+            kinds.append(kind)
+            raw = base64.b64decode(content, validate=True)
+            if kind.startswith("data:image/"):
+                assert cv2.imdecode(np.frombuffer(raw, np.uint8), cv2.IMREAD_COLOR) is not None
+            else:
+                assert raw in [(folder / f"{name}.mp4").read_bytes() for name in ("bowls", "film")]
+    assert kinds.count("data:video/mp4") == 2
+    assert kinds.count("data:image/jpeg") == 2 * 2 * 3  # data sets, clips, frames
+    assert kinds.count("data:image/png") >= 2 * 3  # heat maps and figures
+
+
+def test_tables_hold_the_numbers_of_the_metrics(page, bowls):
+    shown = {number for row in page.numbers["bowls"].values() for number in row}
+    blocks = [
+        (tracker_rows(bowls), TRACKER_COLUMNS),
+        *((rows, PREDICTOR_COLUMNS) for rows in predictor_rows(bowls).values()),
+    ]
+    for rows, columns in blocks:
+        for row in rows.values():
+            for key in row.keys() & columns.keys():
+                assert str("" if row[key] is None else row[key]) in shown
+                if f"paper_{key}" in row:
+                    assert str(row[f"paper_{key}"]) in shown
+
+
+def test_headline_row_has_ours_the_papers_and_persistence(page, bowls):
+    ours = str(bowls.predictors["tracks"]["dispnet"]["error_T_px"])
+    assert [ours, "3.9", "40.0"] in page.numbers[""].values()
+
+
+def test_only_the_unlocked_set_raises_the_alarm(page):
+    assert page.alarms == 2  # at the top of the page and of the set's section
+    assert "locked: false" in page.text["film"]
+    assert "locked: false" not in page.text["bowls"]
+
+
+def test_what_is_simulated_and_what_has_no_truth_is_said(page):
+    assert "Simulated" in page.text["bowls"]
+    assert "No truth: nobody annotated this film" in page.text["film"]
+    assert "No truth" not in page.text["bowls"]
+    assert "Simulated" not in page.text["film"]
+
+
+def test_other_runs_are_not_shown(page):
+    assert "old" not in page.text
+    assert "vin" not in {row.split()[-1] for row in page.numbers["bowls"]}
+
+
+def test_same_inputs_give_the_same_bytes(project, folder, tmp_path):
+    write_page(tmp_path / "report", project.every(), 7, project.shown)
+    assert (tmp_path / "report" / "index.html").read_bytes() == (folder / "index.html").read_bytes()

@@ -1,0 +1,34 @@
+"""The stage, end to end, on files alone."""
+
+import json
+from dataclasses import astuple
+
+import pytest
+import yaml
+
+from physpipe.core.errors import InputError
+from stages.report import main
+
+
+def write_params(project, folder, **run) -> None:
+    compute = {"seed": 7, "threads": 1}
+    sections = {"run": {**project.run.model_dump(), **run}, "report": project.shown.model_dump(), "compute": compute}
+    (folder / "params.yaml").write_text(yaml.safe_dump(sections))
+
+
+def test_stage_writes_metrics_and_page(project, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_params(project, tmp_path)
+    main(*astuple(project.sources), tmp_path / "metrics", tmp_path / "report")
+    assert {path.name for path in (tmp_path / "report").iterdir()} == {"index.html", "bowls.mp4", "film.mp4"}
+    assert {path.suffix for path in (tmp_path / "metrics").iterdir()} == {".json", ".csv"}
+    assert json.loads((tmp_path / "metrics" / "summary.json").read_text())["bowls_locked"] is True
+
+
+def test_a_failed_stage_leaves_no_page(project, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_params(project, tmp_path, datasets=["bowls", "nowhere"])
+    with pytest.raises(InputError, match="nowhere"):
+        main(*astuple(project.sources), tmp_path / "metrics", tmp_path / "report")
+    assert not (tmp_path / "report").exists()
+    assert not (tmp_path / "metrics").exists()

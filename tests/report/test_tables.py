@@ -1,0 +1,103 @@
+"""The metrics files say what the scores say, of this run only, and beside it what the paper says."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from physpipe.core.errors import InputError
+from physpipe.io import results
+from physpipe.report import paper
+from physpipe.report.tables import save_metrics, summary
+
+
+@pytest.fixture(scope="module")
+def metrics(project, tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("metrics")
+    save_metrics(folder, project.every(), "dispnet")
+    return folder
+
+
+def strict(path: Path):
+    def refuse(word: str):
+        raise AssertionError(f"{path} holds {word}")
+
+    return json.loads(path.read_text(), parse_constant=refuse)
+
+
+def test_trackers_json_holds_the_scores(project, metrics):
+    scores = results.load_json(project.sources.scores / "bowls" / "trackers.json")
+    assert strict(metrics / "trackers.json") == {"bowls": scores, "film": {}}  # the paper tabulates no BowlS tracker
+
+
+def test_predictors_json_holds_the_scores_beside_the_papers_figures(project, metrics):
+    scores = results.load_json(project.sources.scores / "bowls" / "predictors.json")
+    written = strict(metrics / "predictors.json")["bowls"]
+    assert written["tracks"]["persistence"] == scores["tracks"]["persistence"]
+    printed = {"paper_error_T_px": 3.9, "paper_error_2T_px": 25.6}
+    assert written["tracks"]["dispnet"] == {**scores["tracks"]["dispnet"], **printed}
+    assert written["truth"]["linear"]["paper_error_T_px"] == 20.1  # the table prints the two cells swapped
+    assert written["truth"]["linear"]["paper_error_2T_px"] == 61.9
+    assert "paper_error_T_px" not in written["tracks"]["linear"]  # a row that the paper's block lacks
+
+
+def test_other_runs_leave_no_trace(metrics):
+    text = "".join(path.read_text() for path in metrics.iterdir())
+    assert "vin" not in text  # scored, but by another run
+    assert "old" not in text
+    assert "probnet" not in json.dumps(strict(metrics / "predictors.json")["bowls"]["truth"])  # not in run.supervised
+
+
+def test_summary_is_flat_and_its_numbers_are_those_of_the_tables(metrics):
+    flat = strict(metrics / "summary.json")
+    assert all(isinstance(value, int | float | bool) for value in flat.values())
+    trackers, predictors = strict(metrics / "trackers.json"), strict(metrics / "predictors.json")
+    assert flat["bowls_unsupervised_mean_px"] == trackers["bowls"]["unsupervised"]["mean_px"]
+    assert flat["bowls_dispnet_truth_error_2T_px"] == predictors["bowls"]["truth"]["dispnet"]["error_2T_px"]
+    assert flat["bowls_persistence_tracks_error_T_px"] == 40.0
+    assert flat["bowls_locked"] is True
+    assert flat["film_locked"] is False
+
+
+def test_calibration_is_a_ratio_to_the_papers_polynomials(metrics, bowls):
+    flat = strict(metrics / "summary.json")
+    assert flat["bowls_calibration_ratio_linear_2T"] == pytest.approx(65.0 / 61.9, abs=1e-6)
+    assert flat["bowls_calibration_ratio_quadratic_T"] == pytest.approx(12.0 / 11.7, abs=1e-6)
+    assert paper.calibration_row(bowls)["linear_T_px"] == 19.0
+
+
+def test_summary_takes_the_named_predictor(project):
+    figures = summary(project.every(), "probnet")
+    assert "bowls_probnet_tracks_error_T_px" in figures
+    assert not any("dispnet" in key for key in figures)
+
+
+def test_csv_files_are_long_and_small(metrics):
+    curves = pd.read_csv(metrics / "curves.csv")
+    assert list(curves) == ["dataset", "supervision", "predictor", "frame", "error_px"]
+    assert set(curves["predictor"]) == {"persistence", "linear", "quadratic", "dispnet", "probnet"}
+    errors = pd.read_csv(metrics / "tracker_errors.csv")
+    assert errors.groupby(["dataset", "tracker"]).size().max() <= 41
+    learning = pd.read_csv(metrics / "learning.csv")
+    assert list(learning) == ["dataset", "model", "step", "loss", "value"]
+    assert learning.groupby(["dataset", "model", "loss"]).size().max() <= 200
+
+
+def test_the_papers_tables_name_known_supervisions_and_figures():
+    tables = paper._paper()
+    for blocks in tables["predictors"].values():
+        assert set(blocks) <= {"truth", "tracks"}
+        for rows in blocks.values():
+            for row in rows.values():
+                assert (
+                    {"error_T_px", "error_2T_px"}
+                    <= set(row)
+                    <= {"error_T_px", "error_2T_px", "nll_bits", "nll_bits_2T"}
+                )
+    assert all(set(row) == {"mean_px", "var_px2"} for rows in tables["trackers"].values() for row in rows.values())
+
+
+def test_a_missing_score_file_is_named(project):
+    with pytest.raises(InputError, match=r"nowhere.predictors\.json: no such file"):
+        project.evidence("nowhere")

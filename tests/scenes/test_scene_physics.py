@@ -1,0 +1,97 @@
+import numpy as np
+import pytest
+
+from physpipe.scenes.physics import DENSITY, LeftTerrainError, PhysicsParams, Start, Trajectory, roll
+from physpipe.scenes.terrain import Bowl, BowlParams
+
+RADIUS, FPS, G = 0.025, 240.0, 9.81
+BOWL = BowlParams(kind="bowl", rim_radius_m=(0.25, 0.31), depth_m=(0.2, 0.3), cut=0.75)
+LOSSLESS = PhysicsParams(
+    gravity_m_s2=G, steps_per_frame=8, contact_s=0.006, friction=0, rolling_resistance_m=0, restitution=1
+)
+
+
+def rolled(physics: PhysicsParams, seed: int, count: int = 1, frames: int = 252) -> tuple[Bowl, Trajectory]:
+    """Balls from about half-way up, heading anywhere, for one clip."""
+    rng = np.random.default_rng(seed)
+    bowl = Bowl(BOWL, rng)
+    azimuth = rng.uniform(0, 6) + np.arange(count) * 2 * np.pi / count
+    foot = np.array([bowl.point(0.6, angle) for angle in azimuth])
+    start = Start(foot, rng.uniform(0, 6, count), np.full(count, 0.6))
+    return bowl, roll(bowl, start, RADIUS, frames, FPS, physics)
+
+
+def mass() -> float:
+    return DENSITY * 4 / 3 * np.pi * RADIUS**3
+
+
+def drift(trajectory: Trajectory) -> np.ndarray:
+    """Relative change of energy, which is counted from a ball at rest at the bottom."""
+    energy = trajectory.energy_j - trajectory.xyz_m.shape[1] * mass() * G * RADIUS
+    return energy / energy[0] - 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_energy_without_friction_drifts_less_than_one_percent(seed: int) -> None:
+    assert np.abs(drift(rolled(LOSSLESS, seed)[1])).max() < 0.01
+
+
+def test_energy_drift_shrinks_with_the_step() -> None:
+    coarse, fine = (LOSSLESS.model_copy(update={"steps_per_frame": steps}) for steps in (4, 16))
+    worst = [max(np.abs(drift(rolled(each, seed)[1])).max() for seed in range(3)) for each in (coarse, fine)]
+    assert worst[1] < worst[0] / 2
+
+
+def test_rolling_resistance_takes_energy() -> None:
+    rough = LOSSLESS.model_copy(update={"friction": 0.5, "rolling_resistance_m": 0.0005})
+    assert -0.9 < drift(rolled(rough, 1)[1])[-1] < -0.05
+
+
+def test_ball_stays_on_the_surface() -> None:
+    """The centre is one radius from the nearest of many points of the bowl, to 0.2 mm."""
+    bowl, trajectory = rolled(LOSSLESS, 2)
+    side = np.linspace(-0.31, 0.31, 400)
+    x, y = (grid.ravel() for grid in np.meshgrid(side, side))
+    inside = bowl.level(x, y) < 1
+    surface = np.stack([x, y, bowl.height(x, y)], axis=1)[inside]
+    centres = trajectory.xyz_m[::20, 0]
+    gap = np.linalg.norm(centres[:, None] - surface, axis=2).min(axis=1)
+    np.testing.assert_allclose(gap, RADIUS, atol=2e-4)
+
+
+@pytest.mark.parametrize(("friction", "inertia"), [(0.0, 1.0), (0.8, 7 / 5)])
+def test_small_swing_has_the_pendulums_period(friction: float, inertia: float) -> None:
+    """A ball that rolls without slipping swings as a pendulum with 7/5 of its mass to move (1 when it slides)."""
+    bowl = Bowl(BowlParams(kind="bowl", rim_radius_m=(0.3, 0.3), depth_m=(0.1, 0.1), cut=0.75), np.random.default_rng(0))
+    start = Start(np.array([bowl.point(0.05, 0.3)]), np.zeros(1), np.zeros(1))
+    physics = LOSSLESS.model_copy(update={"friction": friction})
+    trajectory = roll(bowl, start, RADIUS, 500, FPS, physics)
+    bend = bowl._a2 / bowl._c - RADIUS  # metres, of the centre's path
+    expected = 2 * np.pi * np.sqrt(inertia * bend / G)
+    x = trajectory.xyz_m[:, 0, 0]
+    crossing = np.flatnonzero(np.diff(np.sign(x)))
+    period = 2 * (crossing[-1] - crossing[0]) / (len(crossing) - 1) / FPS
+    assert period == pytest.approx(expected, rel=0.02)
+
+
+def collide(restitution: float) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities before and after a central collision on level ground, weightless so that nothing else acts."""
+    bowl = Bowl(BowlParams(kind="bowl", rim_radius_m=(9, 9), depth_m=(1e-6, 1e-6), cut=0.1), np.random.default_rng(0))
+    start = Start(np.array([[-0.1, 0.0], [0.1, 0.0]]), np.array([0.0, 0.0]), np.array([0.5, 0.0]))
+    physics = LOSSLESS.model_copy(update={"restitution": restitution, "gravity_m_s2": 0, "steps_per_frame": 32})
+    velocity = np.diff(roll(bowl, start, RADIUS, 200, FPS, physics).xyz_m[..., 0], axis=0) * FPS
+    return velocity[0], velocity[-1]
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.6])
+def test_collision_keeps_momentum_and_parts_by_restitution(restitution: float) -> None:
+    before, after = collide(restitution)
+    assert after.sum() == pytest.approx(before.sum(), rel=1e-3)
+    assert (after[1] - after[0]) / (before[0] - before[1]) == pytest.approx(restitution, abs=0.05)
+
+
+def test_ball_over_the_rim_is_told() -> None:
+    bowl = Bowl(BOWL, np.random.default_rng(0))
+    start = Start(np.array([bowl.point(0.8, 0.0)]), np.zeros(1), np.array([9.0]))
+    with pytest.raises(LeftTerrainError):
+        roll(bowl, start, RADIUS, 252, FPS, LOSSLESS)

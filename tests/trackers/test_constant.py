@@ -1,0 +1,23 @@
+"""Trackers that look at nothing."""
+
+import numpy as np
+import pytest
+
+from physpipe.core.errors import InputError
+from physpipe.trackers.constant import Centre, Persistence
+
+FRAMES = np.zeros((4, 24, 40, 3), np.uint8)
+
+
+def test_persistence_stays_at_the_start_and_needs_one() -> None:
+    found = Persistence().track(FRAMES, np.array([3.25, 7.5]))
+    np.testing.assert_array_equal(found.xy, np.tile([3.25, 7.5], (4, 1)))
+    with pytest.raises(InputError, match="persistence"):
+        Persistence().track(FRAMES)
+
+
+def test_the_centre_is_as_far_from_the_first_pixel_as_from_the_last() -> None:
+    found = Centre().track(FRAMES)
+    np.testing.assert_array_equal(found.xy, np.tile([19.5, 11.5], (4, 1)))
+    assert (found.score == 0).all()
+    assert found.xy.dtype == np.float32

@@ -1,0 +1,48 @@
+"""Small films whose truth is known, shared by tests; never square."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physpipe.core.geometry import Geometry
+from physpipe.io import clips as clip_files
+from physpipe.io.clips import SPLITS, Clip, ClipSet
+
+HEIGHT, WIDTH = 40, 56
+RED, BLUE = (220, 40, 30), (30, 60, 230)
+
+
+def orbit(frames: int, phase: float, shrink: float = 1.0) -> NDArray[np.float64]:
+    """(frames, 2) pixels on an ellipse inside the frame."""
+    angle = phase + 0.13 * np.arange(frames)
+    return np.stack([27 + 19 * shrink * np.cos(angle), 19 + 12 * shrink * np.sin(angle)], axis=1)
+
+
+def draw(xy: NDArray[np.float64], colours: list[tuple[int, int, int]], seed: int) -> NDArray[np.uint8]:
+    """(T, H, W, 3) frames with a soft disc of 3 px radius at each of (T, K, 2) pixels, on a still texture with noise."""
+    rng = np.random.default_rng(seed)
+    ground = rng.uniform(90, 130, (HEIGHT, WIDTH, 1)) + rng.uniform(-10, 10, 3)
+    frames = np.repeat(ground[None], len(xy), axis=0)
+    ys, xs = np.mgrid[:HEIGHT, :WIDTH]
+    for number, colour in enumerate(colours):
+        apart = np.hypot(xs - xy[:, number, 0, None, None], ys - xy[:, number, 1, None, None])
+        cover = np.clip(3.5 - apart, 0, 1)[..., None]
+        frames = frames * (1 - cover) + cover * np.array(colour)
+    return (frames + rng.normal(0, 2, frames.shape)).clip(0, 255).astype(np.uint8)
+
+
+def save_clips(folder: Path, films: list[NDArray[np.uint8]]) -> ClipSet:
+    """A clip set of 80-fps films; of every five, three are for training, one validates and one tests."""
+    made = []
+    for number, frames in enumerate(films):
+        length = len(frames)
+        split = SPLITS[max(0, number % 5 - 2)]
+        geometry = Geometry(0, 0, frames.shape[2], frames.shape[1], frames.shape[2], frames.shape[1])
+        seconds = np.arange(length) / 80
+        source = np.arange(length, dtype=np.int32)
+        name = f"clip_{number:02d}"
+        ok = np.full(length, "ok")
+        made.append(Clip(name, split, f"{name}.mp4", geometry, frames, seconds, source, seconds, ok))
+    clip_files.save(folder, made)
+    return ClipSet(folder)
