@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
 from physpipe.core.params import PARAMS
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import adding, params_file
+from physpipe.io.annotations import REFERENCE, TEMPLATES
 from physpipe.io.atomic import replacing
 
 TEMPLATE = "pendulum"
@@ -32,17 +34,20 @@ def add(words: argparse.Namespace) -> None:
     name = words.name
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
         raise InputError(name, "not a name for a data set", "use letters, digits and _, a letter first")
-    text = _extended(PARAMS.read_text(), name, words) if PARAMS.is_file() else None
-    if text is None:
+    if not PARAMS.is_file():
         raise InputError(PARAMS, "no such file", "run from the project's root")
-    annotations = Path("data/annotations") / name
-    found = adding.copy_film(words.folder, Path("data/raw") / name, annotations)
+    before = PARAMS.read_text()
+    after = _extended(before, name, words)
+    raw, annotations = Path("data/raw") / name, Path("data/annotations") / name
+    found = adding.copy_film(words.folder, raw, annotations)
     with replacing(PARAMS) as temporary:
-        temporary.write_text(text)
-    print(f"{len(found)} recordings in data/raw/{name}; section `datasets.{name}` in {PARAMS}. Next:")
-    print(f"  dvc add data/raw/{name}")
+        temporary.write_text(after)
+    kept = f"{PARAMS} had a section `datasets.{name}`: kept as it was"
+    print(f"{len(found)} recordings in {raw}. {kept if after == before else f'{PARAMS} extended'}.\nNext:")
+    print(f"  dvc add {raw}")
     print("  dvc repro" if words.run else f"  dvc exp run -S 'run.datasets=[{name}]'")
-    print(f"To measure errors, give boxes in {annotations}/templates.csv (clip names: data/clips/{name}).")
+    if not (annotations / REFERENCE).exists():
+        print(f"To have errors measured, put boxes into {annotations / TEMPLATES} (clip names: data/clips/{name}).")
 
 
 def _extended(text: str, name: str, words: argparse.Namespace) -> str:
@@ -52,8 +57,9 @@ def _extended(text: str, name: str, words: argparse.Namespace) -> str:
         extended = params_file.with_item(extended, "run.datasets", name)
     try:
         IngestParams.model_validate(yaml.safe_load(extended)["datasets"][name]["ingest"])
-    except ValueError as error:
-        raise InputError(PARAMS, f"ingest would refuse it: {error}", "correct the options") from None
+    except ValidationError as error:
+        faults = [f"`{'.'.join(map(str, each['loc']))}`: {each['msg']}" for each in error.errors()]
+        raise InputError(PARAMS, f"ingest would refuse {'; '.join(faults)}", "correct the options") from None
     return extended
 
 

@@ -89,7 +89,7 @@ def ingest(name: str, raw: Path, params: IngestParams) -> tuple[Iterator[Clip], 
 
 def _converted(path: Path, store: Path, params: recording.ConvertParams) -> Path | InputError:
     """The entry with the converted recording, or what is wrong with the recording."""
-    code = [*Path(__file__).parent.glob("*.py"), Path(video.__file__)]
+    code = [*Path(__file__).parent.glob("*.py"), Path(video.__file__), Path(packed.__file__)]
     entry = store / packed.fingerprint(path, params, code)
     try:
         if not entry.exists():

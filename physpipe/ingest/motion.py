@@ -16,6 +16,7 @@ BLUR_PX = 1.0  # makes shifts of a pixel or two linear in the slopes, and noise 
 COARSE_STEPS = 3
 OUTLIER = 3.0  # times the mean absolute difference
 UNSEEN = 2  # frames
+NOISIEST = 5.0  # times the usual block's; what lies above is motion that never pauses
 QUIET = 0.25  # quantile over time that still is noise when something moves through a block most of the time
 
 Grey = NDArray[Any]
@@ -75,7 +76,8 @@ def motion(frames: NDArray[np.uint8], params: TrimParams) -> NDArray[np.floating
         earlier.append(grey)
     energy = np.stack(energies)
     noise = np.quantile(energy, QUIET, axis=0)
-    return (energy / np.maximum(noise, max(np.median(noise), 1.0))).max(axis=1)
+    usual = max(np.median(noise), 1.0)
+    return (energy / np.clip(noise, usual, NOISIEST * usual)).max(axis=1)
 
 
 def _grey(frame: NDArray[np.uint8]) -> Grey:

@@ -124,7 +124,5 @@ def common_size(clips: ClipSet) -> tuple[int, int]:
     """(height, width) of every clip in pixels; raises InputError when they differ."""
     sizes = clips.table[["height", "width"]].drop_duplicates().to_numpy().tolist()
     if len(sizes) != 1:
-        raise InputError(
-            clips.folder / TABLE, f"clips of several sizes {sizes}", "ingest them with one `size`"
-        )
+        raise InputError(clips.folder / TABLE, f"clips of several sizes {sizes}", "ingest them with one `size`")
     return sizes[0][0], sizes[0][1]

@@ -22,7 +22,7 @@ def with_section(text: str, parent: str, template: str, name: str, changes: dict
         return text
     if template not in sections:
         raise InputError("params.yaml", f"no section `{parent}.{template}` to copy", "restore it from Git")
-    lines = text.splitlines(keepends=True)
+    lines = (text.rstrip() + "\n").splitlines(keepends=True)
     start, indent = sections.lc.key(template)
     end = _end_of_block(lines, start, indent)
     block = textwrap.dedent("".join(lines[start:end])).replace(template, name, 1)
@@ -36,14 +36,12 @@ def with_item(text: str, where: str, item: str) -> str:
     if item in items:
         return text
     lines = text.splitlines(keepends=True)
-    if items.fa.flow_style():
-        line = items.lc.line
-        opening, closing = lines[line].rsplit("]", 1)
-        lines[line] = f"{opening}{', ' if items else ''}{item}]{closing}"
-    else:
-        line, column = items.lc.item(len(items) - 1)
-        lines.insert(line + 1, f"{lines[line][:column]}{item}\n")
-    return "".join(lines)
+    if items.fa.flow_style() or not items:
+        start = sum(map(len, lines[: items.lc.line])) + items.lc.col
+        end = text.index("]", start)
+        return f"{text[:end]}{', ' if items else ''}{item}{text[end:]}"
+    line, column = items.lc.item(len(items) - 1)
+    return "".join([*lines[: line + 1], f"{lines[line][:column]}{item}\n", *lines[line + 1 :]])
 
 
 def _find(text: str, where: str) -> Any:

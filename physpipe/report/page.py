@@ -22,7 +22,7 @@ from physpipe.report.film import FilmParams, shown_clips, write_film
 from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, headlines, known_columns
 from physpipe.report.overlays import Marks, draw, marks_of
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
-from physpipe.report.run import SUPERVISIONS, Evidence, Row
+from physpipe.report.run import Evidence, Row
 from physpipe.report.spans import doubtful_spans, nearest_px
 
 JPEG_QUALITY = 85
@@ -62,6 +62,7 @@ def write_page(folder: Path, every: Sequence[Evidence], seed: int, params: Repor
             known_columns=known_columns,
             tracker_columns=TRACKER_COLUMNS,
             predictor_columns=PREDICTOR_COLUMNS,
+            supervision_titles=figures.TITLES,
             predictor=params.predictor,
             colours=colours,
         )
@@ -83,8 +84,7 @@ def _section(evidence: Evidence, folder: Path, params: ReportParams) -> dict[str
         "counts": {split: len(clips.names(split)) for split in ("train", "valid", "test")},
         "objects": int(evidence.track["object"].max()) + 1,
         "trackers": _ordered(tracker_rows(evidence)),
-        "predictors": {each: rows for each, rows in predictor_rows(evidence).items() if rows},
-        "supervisions": {each: figures.TITLES[each] for each in SUPERVISIONS},
+        "predictors": predictor_rows(evidence),
         "figures": _figures(evidence),
         "horizon": evidence.horizon,
         "calibration": calibration_row(evidence),

@@ -7,10 +7,11 @@ from typing import Any
 
 import pandas as pd
 
+from physpipe.core.errors import InputError
 from physpipe.core.params import Section
+from physpipe.core.prediction import BASELINES
 from physpipe.io import forecasts, results, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.predictors import BASELINES
 from physpipe.report.curves import learning_curves
 
 SUPERVISIONS = ("tracks", "truth")
@@ -27,12 +28,16 @@ class RunParams(Section):
     learned: list[str]
     """Predictors trained on the unsupervised tracks."""
     supervised: list[str]
-    """Predictors trained on the truth, for the paper's supervised rows."""
+    """Data sets on which they are trained on the truth too, for the paper's supervised rows."""
 
-    def predictors(self, supervision: str) -> list[str]:
-        """Predictors of one supervision, those that learn nothing first."""
-        learned = self.learned if supervision == "tracks" else self.supervised
-        return [*BASELINES, *(name for name in learned if name not in BASELINES)]
+    @property
+    def predictors(self) -> list[str]:
+        """All predictors, those that learn nothing first."""
+        return list(dict.fromkeys([*BASELINES, *self.learned]))
+
+    def supervisions(self, dataset: str) -> list[str]:
+        """Those that predictors are trained with on `dataset`."""
+        return [each for each in SUPERVISIONS if each == "tracks" or dataset in self.supervised]
 
 
 @dataclass(frozen=True)
@@ -90,12 +95,14 @@ class Evidence:
 
 def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
     """Reads all about data set `name`; `shown` names the predictor of the pictures. Raises InputError."""
-    tracker = sources.trackers / name
-    scores = sources.scores / name
-    predictors = results.load_json(scores / "predictors.json")
+    if shown not in run.predictors:
+        known = ", ".join(run.predictors)
+        raise InputError("report.predictor", f"`{shown}` does not run", f"use one of {known}, or add it to run.learned")
+    tracker, scores = sources.trackers / name, sources.scores / name
     verdict = results.load_json(tracker / "all" / "verdict.json")
     forecast = sources.forecasts / name / "tracks" / f"{shown}.parquet"
     heat_maps = [tracker / part / "heatmaps.png" for part in ("first", "all")]
+    supervisions = run.supervisions(name)
     return Evidence(
         name=name,
         simulated=name in run.simulated,
@@ -103,10 +110,10 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
         truth=tracks.load(sources.truth / f"{name}.parquet"),
         track=tracks.load(sources.tracks / f"{name}.parquet"),
         trackers=results.load_json(scores / "trackers.json"),
-        predictors={each: _of_this_run(predictors.get(each, {}), run.predictors(each)) for each in SUPERVISIONS},
-        calibration=predictors.get("calibration", {}),
+        predictors=_of_this_run(scores / "predictors.json", supervisions, run.predictors),
+        calibration=results.load_json(scores / "predictors.json")["calibration"],
         tracker_errors=results.load_csv(scores / "tracker_errors.csv"),
-        horizons=_horizons(results.load_csv(scores / "horizons.csv"), run),
+        horizons=_horizons(scores / "horizons.csv", supervisions, run.predictors),
         learning=learning_curves(_curve_files(name, run, sources)),
         forecast=forecasts.load(forecast),
         horizon=int(str(forecasts.metadata(forecast)["horizon"])),
@@ -116,21 +123,25 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
     )
 
 
-def _of_this_run(rows: dict[str, Row], names: Sequence[str]) -> dict[str, Row]:
-    return {name: rows[name] for name in names if name in rows}
+def _of_this_run(path: Path, supervisions: Sequence[str], names: Sequence[str]) -> dict[str, dict[str, Row]]:
+    scores = results.load_json(path)
+    missing = [f"{each} {name}" for each in supervisions for name in names if name not in scores.get(each, {})]
+    if missing:
+        raise InputError(path, f"lacks scores of {', '.join(missing)}", "run `dvc repro`, which makes them")
+    return {each: {name: scores[each][name] for name in names} for each in supervisions}
 
 
-def _horizons(table: pd.DataFrame, run: RunParams) -> pd.DataFrame:
-    wanted = [(each, name) for each in SUPERVISIONS for name in run.predictors(each)]
-    return table[pd.MultiIndex.from_frame(table[["supervision", "predictor"]]).isin(wanted)]
+def _horizons(path: Path, supervisions: Sequence[str], names: Sequence[str]) -> pd.DataFrame:
+    table = results.load_csv(path)
+    return table[table["supervision"].isin(supervisions) & table["predictor"].isin(names)]
 
 
 def _curve_files(name: str, run: RunParams, sources: Sources) -> list[tuple[str, Path]]:
-    """Models and their learning curves, where they have learned anything on this data set."""
+    """Models and their learning curves, of all that has learned anything on this data set."""
     trackers = [("tracker", sources.trackers / name / part / "curve.csv") for part in ("first", "all")]
     predictors = [
         (f"{predictor}, {supervision}", sources.predictors / name / supervision / predictor / "curve.csv")
-        for supervision in SUPERVISIONS
-        for predictor in run.predictors(supervision)
+        for supervision in run.supervisions(name)
+        for predictor in run.learned
     ]
-    return [(model, path) for model, path in [*trackers, *predictors] if path.is_file()]
+    return [*trackers, *predictors]

@@ -9,7 +9,7 @@ import pandas as pd
 from physpipe.io import results
 from physpipe.report.curves import error_distributions
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
-from physpipe.report.run import SUPERVISIONS, Evidence
+from physpipe.report.run import Evidence
 
 CURVE_COLUMNS = ["dataset", "supervision", "predictor", "frame", "error_px"]
 DISTRIBUTION_COLUMNS = ["dataset", "tracker", "error_px", "share"]
@@ -44,12 +44,10 @@ def _headlines(evidence: Evidence, predictor: str) -> Iterator[tuple[str, Any]]:
     ours = evidence.trackers.get("unsupervised", {})
     for key in ("mean_px", "p99_px", "off_track"):
         yield f"unsupervised_{key}", ours.get(key)
-    for supervision in SUPERVISIONS:
-        rows = evidence.predictors[supervision]
+    for supervision, rows in evidence.predictors.items():
         for name in dict.fromkeys((predictor, "persistence")):
             for key in ("error_T_px", "error_2T_px"):
-                if name in rows:
-                    yield f"{name}_{supervision}_{key}", rows[name].get(key)
+                yield f"{name}_{supervision}_{key}", rows[name].get(key)
     for key, value in calibration_row(evidence).items():
         if key.startswith("ratio"):
             yield f"calibration_{key}", value

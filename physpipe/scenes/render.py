@@ -1,72 +1,24 @@
-"""The picture before the camera spoils it: a lit terrain from straight above, balls and their soft shadows.
+"""The picture before the camera spoils it: a lit terrain from straight above, with balls on it.
 
 Drawn analytically: the terrain once a clip, then only a small patch a ball and frame.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from typing import cast
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
-from physpipe.core.params import Section
+from physpipe.scenes.balls import Smear, draw_ball, draw_shadow
 from physpipe.scenes.film import Camera, Image
+from physpipe.scenes.look import Light, LookParams
 from physpipe.scenes.terrain import Terrain
 
 SUPERSAMPLE = 2  # the terrain is drawn this much finer, against jagged rims and contours
-HIGHLIGHT = 16  # sharpness of a ball's highlight (Phong's exponent)
 
 
-class LookParams(Section):
-    """Colours and light of the scene."""
-
-    surface_grey: tuple[float, float]
-    """Range of the terrain's brightness, 0 to 255, drawn for each clip."""
-    tint: float = Field(ge=0)
-    """Largest deviation of one colour channel from that grey, in grey levels."""
-    mottle: float = Field(ge=0, lt=1)
-    """Standard deviation of the surface's patchiness, relative to its brightness."""
-    mottle_px: int = Field(ge=1)
-    """Width of one patch, in source pixels."""
-    contour_m: float = Field(gt=0)
-    """Height between two contour rings, in metres."""
-    contour_contrast: float = Field(ge=0, lt=1)
-    """Relative darkness of a ring: what shows heights on an evenly lit slope."""
-    rim: float = Field(ge=0)
-    """Width of the rim, in parts of the distance from the middle to the border."""
-    rim_brightness: float = Field(ge=0)
-    """Brightness of the rim, relative to a terrain that faces the lamp."""
-    table_brightness: float = Field(ge=0)
-    """Brightness of what lies around the rim, likewise."""
-    light_tilt_deg: tuple[float, float]
-    """Range of the light's angle from the vertical, in degrees; its compass direction is any."""
-    ambient: float = Field(ge=0, le=1)
-    """Part of the light that comes from everywhere."""
-    gloss: float = Field(ge=0)
-    """Brightness of a ball's highlight, in grey levels."""
-    shadow: float = Field(ge=0, le=1)
-    """How much of the light the middle of a cast shadow loses."""
-    shadow_softness: float = Field(gt=0)
-    """Width of a shadow's blurred edge, in ball radii."""
-
-
-@dataclass(frozen=True)
-class Light:
-    """A far lamp."""
-
-    towards: NDArray[np.float64]
-    """(3,) unit vector from the scene to the lamp: x right, y down, z up."""
-
-    @classmethod
-    def sample(cls, params: LookParams, rng: np.random.Generator) -> "Light":
-        tilt, compass = np.deg2rad(rng.uniform(*params.light_tilt_deg)), rng.uniform(0, 2 * np.pi)
-        return cls(np.array([np.sin(tilt) * np.cos(compass), np.sin(tilt) * np.sin(compass), np.cos(tilt)]))
-
-
-class Set:
+class Scene:
     """A terrain with its light, ready to be filmed by one camera."""
 
     def __init__(self, params: LookParams, terrain: Terrain, camera: Camera, rng: np.random.Generator):
@@ -99,26 +51,6 @@ class Set:
             yield picture
 
 
-@dataclass(frozen=True)
-class Patches:
-    """A thing smaller than the picture at F moments: picture <- picture * through + light."""
-
-    corner: NDArray[np.intp]
-    """(F, 2) column and row of the patch's top-left pixel."""
-    through: Image
-    """(F, P, P, 1) part of what lies behind that still shows."""
-    light: Image
-    """(F, P, P, 3) light of its own, 0 to 255."""
-
-    def paint(self, picture: Image, frame: int) -> None:
-        """Draws the thing over `picture` in place."""
-        x, y = self.corner[frame]
-        rows, columns = self.through.shape[1:3]
-        under = picture[y : y + rows, x : x + columns]
-        under *= self.through[frame]
-        under += self.light[frame]
-
-
 def draw_terrain(params: LookParams, terrain: Terrain, camera: Camera, light: Light, rng: np.random.Generator) -> Image:
     """(H, W, 3), 0 to 255: shading shows the slope, contour rings the height, a bright ring the border."""
     height, width = camera.params.height, camera.params.width
@@ -137,57 +69,6 @@ def draw_terrain(params: LookParams, terrain: Terrain, camera: Camera, light: Li
     tone = rng.uniform(*params.surface_grey) + rng.uniform(-params.tint, params.tint, 3)
     picture = cv2.resize(shade.astype(np.float32), (width, height), interpolation=cv2.INTER_AREA)
     return (picture * _mottle(width, height, params, rng))[..., None] * tone.astype(np.float32)
-
-
-@dataclass(frozen=True)
-class Smear:
-    """Where one ball is seen, and how far it goes while the shutter is open, at F moments."""
-
-    xy: NDArray[np.float64]
-    """(F, 2) pixels."""
-    way: NDArray[np.float64]
-    """(F, 2) pixels during one exposure."""
-    moments: int
-    """How many moments of an exposure are averaged."""
-    size: tuple[int, int]
-    """Width and height of the picture."""
-
-    def patches(self, reach: float) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
-        """Corners (F, 2) of patches that hold all within `reach` pixels of the ball, and x and y of their pixels
-        from the ball's centre at each moment, two (F, M, P, P)."""
-        half = int(np.ceil(reach + np.abs(self.way).max() / 2))
-        corner = np.clip(np.rint(self.xy).astype(np.intp) - half, 0, np.array(self.size) - 2 * half - 1)
-        moment = (np.arange(self.moments) + 0.5) / self.moments - 0.5
-        centre = (self.xy - corner)[:, None] + self.way[:, None] * moment[:, None]  # (F, M, 2)
-        away = np.arange(2 * half + 1) - centre[..., None]  # (F, M, 2, P)
-        dx, dy = np.broadcast_arrays(away[:, :, 0, None, :], away[:, :, 1, :, None])
-        return corner, dx, dy
-
-
-def draw_ball(smear: Smear, radius: float, rgb: tuple[int, int, int], light: Light, look: LookParams) -> Patches:
-    """A lit sphere of `radius` pixels."""
-    corner, dx, dy = smear.patches(radius + 1)
-    distance = np.hypot(dx, dy)
-    cover = np.clip(radius + 0.5 - distance, 0, 1)
-    inward = 1 / np.maximum(distance, radius)
-    nx, ny = dx * inward, dy * inward
-    nz = np.sqrt(np.maximum(1 - nx**2 - ny**2, 0))
-    facing = np.maximum(np.stack([nx, ny, nz], axis=-1) @ light.towards, 0)
-    mirrored = np.maximum(2 * facing * nz - light.towards[2], 0)  # towards the camera, straight above
-    diffuse = (cover * (look.ambient + (1 - look.ambient) * facing)).mean(axis=1)
-    gloss = (cover * mirrored**HIGHLIGHT).mean(axis=1)
-    shine = diffuse[..., None] * np.array(rgb) + look.gloss * gloss[..., None]
-    return Patches(corner, (1 - cover.mean(axis=1))[..., None].astype(np.float32), shine.astype(np.float32))
-
-
-def draw_shadow(smear: Smear, radius: float, light: Light, look: LookParams) -> Patches:
-    """The soft shadow of a sphere of `radius` pixels that touches the ground below it."""
-    soft = look.shadow_softness * radius
-    away = -radius * light.towards[:2] / light.towards[2]
-    corner, dx, dy = replace(smear, xy=smear.xy + away).patches(radius + soft)
-    depth = np.clip((radius + soft / 2 - np.hypot(dx, dy)) / soft, 0, 1)
-    dark = look.shadow * (depth**2 * (3 - 2 * depth)).mean(axis=1)[..., None]
-    return Patches(corner, (1 - dark).astype(np.float32), np.zeros((*dark.shape[:3], 3), np.float32))
 
 
 def _mottle(width: int, height: int, params: LookParams, rng: np.random.Generator) -> Image:

@@ -13,8 +13,9 @@ from physpipe.core.parallel import in_parallel
 from physpipe.core.params import Section
 from physpipe.io.recordings import Recording
 from physpipe.scenes.film import Camera, CameraParams, encode
+from physpipe.scenes.look import LookParams
 from physpipe.scenes.physics import LeftTerrainError, PhysicsParams, Start, Trajectory, roll
-from physpipe.scenes.render import LookParams, Set
+from physpipe.scenes.render import Scene
 from physpipe.scenes.terrain import TERRAINS, BowlParams, Terrain
 
 TRIES = 200  # worlds drawn for one clip before the params are called impossible
@@ -63,7 +64,7 @@ def record(params: WorldParams, name: str, number: int) -> Recording:
     still = int(film_rng.integers(*params.still_frames, endpoint=True))
     xyz = np.concatenate([np.repeat(trajectory.xyz_m[:1], still, axis=0), trajectory.xyz_m])
     camera = Camera(params.camera, len(xyz), film_rng)
-    scene = Set(params.look, terrain, camera, film_rng)
+    scene = Scene(params.look, terrain, camera, film_rng)
     xy = camera.project(xyz)
     frames = camera.expose(scene.film(xyz, xy, params.balls.radius_m, params.balls.rgb))
     return Recording(f"clip_{number:04d}.mp4", encode(frames, params.camera), xy)

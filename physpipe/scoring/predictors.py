@@ -56,7 +56,7 @@ def score_predictors(
             curve = each.groupby("frame", as_index=False)["error_px"].mean().dropna()
             curves.append(curve.assign(supervision=supervision, predictor=name))
     columns = ["supervision", "predictor", "frame", "error_px"]
-    return figures, pd.concat([pd.DataFrame(columns=columns), *curves])[columns]
+    return figures, pd.concat(curves)[columns].astype({"frame": int})
 
 
 def calibration(truth: pd.DataFrame, horizon: int) -> dict[str, float]:

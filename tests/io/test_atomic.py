@@ -21,9 +21,14 @@ def test_a_file_appears_when_the_block_ends_well(tmp_path: Path) -> None:
 def test_a_failed_block_keeps_the_older_file(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     path.write_text("old")
-    with pytest.raises(ZeroDivisionError), replacing(path) as temporary:
-        temporary.write_text("half")
-        _ = 1 / 0
+
+    def half_done() -> None:
+        with replacing(path) as temporary:
+            temporary.write_text("half")
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        half_done()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
 
@@ -38,9 +43,14 @@ def test_a_folder_replaces_the_older_one_as_a_whole(tmp_path: Path) -> None:
 def test_a_failed_block_keeps_the_older_folder(tmp_path: Path) -> None:
     with replacing_folder(tmp_path / "set") as temporary:
         (temporary / "old").touch()
-    with pytest.raises(ZeroDivisionError), replacing_folder(tmp_path / "set") as temporary:
-        (temporary / "half").touch()
-        _ = 1 / 0
+
+    def half_done() -> None:
+        with replacing_folder(tmp_path / "set") as temporary:
+            (temporary / "half").touch()
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        half_done()
     assert [path.name for path in (tmp_path / "set").iterdir()] == ["old"]
     assert [path.name for path in tmp_path.iterdir()] == ["set"]
 

@@ -90,7 +90,9 @@ def test_source_fps_replaces_the_timestamps(tmp_path: Path) -> None:
     assert [frame.time_s for frame in frames] == [0, 0.25, 0.5, 0.75, 1.0]
 
 
-@pytest.mark.parametrize(("name", "codec", "pixels"), [("film.mkv", "libx264", "yuv420p"), ("film.avi", "mjpeg", "yuvj420p")])
+@pytest.mark.parametrize(
+    ("name", "codec", "pixels"), [("film.mkv", "libx264", "yuv420p"), ("film.avi", "mjpeg", "yuvj420p")]
+)
 def test_a_damaged_frame_keeps_its_number_and_time(tmp_path: Path, name: str, codec: str, pixels: str) -> None:
     options = {"bf": "0"} if codec == "libx264" else None
     noise = np.random.default_rng(1).integers(0, 255, (30, H, W, 3)).astype(np.uint8)

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 from physpipe.core.geometry import Geometry
+from physpipe.core.prediction import BASELINES
 from physpipe.io import clips, forecasts, results, tracks
-from physpipe.predictors import BASELINES
 from physpipe.report.film import FilmParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather
@@ -140,27 +140,20 @@ def _learning(sources: Sources, name: str, world: World, K: int, locked: bool) -
 def _scores(folder: Path, name: str, world: World, annotated: bool, locked: bool) -> None:
     """Scores in which every number tells where it came from; `vin` is left from another run."""
     rng = np.random.default_rng(3)
-    trackers, errors = {}, []
-    for number, tracker in enumerate(world.trackers if annotated else ()):
+    empty = pd.DataFrame(columns=["tracker", "clip", "object", "frame", "error_px"])
+    trackers, errors = {}, [empty]
+    for number, tracker in enumerate(world.trackers):
         error = np.abs(rng.normal(world.off_px + number, 0.4, 300))
         error[: 20 * number] = np.nan
-        errors.append(
-            pd.DataFrame(
-                {"tracker": tracker, "clip": f"{name}_003", "object": 0, "frame": np.arange(300), "error_px": error}
-            )
-        )
+        rows = {"tracker": tracker, "clip": f"{name}_003", "object": 0, "frame": np.arange(300), "error_px": error}
         mean = float(np.nanmean(error))
-        trackers[tracker] = {
-            "mean_px": mean,
-            "mean_px_low": mean - 0.1,
-            "mean_px_high": mean + 0.1,
-            "var_px2": float(np.nanvar(error)),
-        }
-        trackers[tracker] |= {"p99_px": float(np.nanquantile(error, 0.99)), "off_track": 0.0, "lost": 0.1 * number}
-        trackers[tracker] |= {"locked": locked if tracker == "unsupervised" else None, "clips": 2, "frames": 300}
-    empty = pd.DataFrame(columns=["tracker", "clip", "object", "frame", "error_px"])
+        figures = {"mean_px": mean, "mean_px_low": mean - 0.1, "mean_px_high": mean + 0.1, "lost": 0.1 * number}
+        figures |= {"var_px2": float(np.nanvar(error)), "p99_px": float(np.nanquantile(error, 0.99)), "off_track": 0.0}
+        verdict = {"locked": locked if tracker == "unsupervised" else None, "clips": 2 if annotated else 0}
+        trackers[tracker] = {**(figures if annotated else dict.fromkeys(figures)), **verdict}
+        errors += [pd.DataFrame(rows)] if annotated else []
     results.save_json(folder / "trackers.json", trackers)
-    results.save_csv(folder / "tracker_errors.csv", pd.concat([empty, *errors]))
+    results.save_csv(folder / "tracker_errors.csv", pd.concat(errors))
     predictors: dict[str, dict] = {
         "calibration": {"linear_T_px": 19.0, "linear_2T_px": 65.0, "quadratic_T_px": 12.0, "quadratic_2T_px": 90.0}
         if annotated
@@ -168,33 +161,17 @@ def _scores(folder: Path, name: str, world: World, annotated: bool, locked: bool
     }
     curves = [pd.DataFrame(columns=["supervision", "predictor", "frame", "error_px"])]
     frame = np.arange(1, world.frames)
-    for supervision in ("tracks", "truth") if annotated else ():
+    for supervision in ("tracks", "truth"):
         predictors[supervision] = {}
         for number, predictor in enumerate(dict.fromkeys([*BASELINES, *world.learned, "vin"])):
             size = 40.0 if predictor == "persistence" else 2.0 + number + len(supervision) / 100
-            row = {
-                "error_T_px": size,
-                "error_T_px_low": size * 0.9,
-                "error_T_px_high": size * 1.1,
-                "error_2T_px": 2 * size,
-            }
-            row |= {
-                "error_4T_px": 4 * size,
-                "skill_T": 1 - size / 40,
-                "coverage_90": 0.88 if predictor == "probnet" else None,
-            }
-            predictors[supervision][predictor] = row
+            row = {"error_T_px": size, "error_T_px_low": size * 0.9, "error_T_px_high": size * 1.1}
+            row |= {"error_2T_px": 2 * size, "error_4T_px": 4 * size, "skill_T": 1 - size / 40}
+            row |= {"coverage_90": 0.88 if predictor == "probnet" else None}
+            predictors[supervision][predictor] = row if annotated else dict.fromkeys(row)
             error_px = size * frame / world.frames
-            curves.append(
-                pd.DataFrame(
-                    {
-                        "supervision": supervision,
-                        "predictor": predictor,
-                        "frame": frame,
-                        "error_px": error_px,
-                    }
-                )
-            )
+            curve = {"supervision": supervision, "predictor": predictor, "frame": frame, "error_px": error_px}
+            curves += [pd.DataFrame(curve)] if annotated else []
     results.save_json(folder / "predictors.json", predictors)
     results.save_csv(folder / "horizons.csv", pd.concat(curves))
 
@@ -206,9 +183,7 @@ def build(root: Path, world: World) -> Project:
     _data_set(sources, world, "bowls", K=1, annotated=True, locked=True)
     _data_set(sources, world, "film", K=2, annotated=False, locked=False)
     _data_set(sources, world, "old", K=1, annotated=True, locked=True)
-    run = RunParams(
-        datasets=["bowls", "film"], simulated=["bowls"], learned=list(world.learned), supervised=["dispnet"]
-    )
+    run = RunParams(datasets=["bowls", "film"], simulated=["bowls"], learned=list(world.learned), supervised=["bowls"])
     film = FilmParams(clips=2, fps_at_most=30, kilobytes=900)
     shown = ReportParams(
         predictor="dispnet",

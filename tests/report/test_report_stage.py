@@ -25,6 +25,13 @@ def test_stage_writes_metrics_and_page(project, tmp_path, monkeypatch):
     assert json.loads((tmp_path / "metrics" / "summary.json").read_text())["bowls_locked"] is True
 
 
+def test_a_predictor_of_another_run_is_refused(project, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_params(project, tmp_path, learned=["probnet"])  # forecasts of dispnet still lie about
+    with pytest.raises(InputError, match="`dispnet` does not run"):
+        main(*astuple(project.sources), tmp_path / "metrics", tmp_path / "report")
+
+
 def test_a_failed_stage_leaves_no_page(project, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_params(project, tmp_path, datasets=["bowls", "nowhere"])

@@ -1,6 +1,7 @@
 """The metrics files say what the scores say, of this run only, and beside it what the paper says."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -9,6 +10,7 @@ import pytest
 from physpipe.core.errors import InputError
 from physpipe.io import results
 from physpipe.report import paper
+from physpipe.report.run import gather
 from physpipe.report.tables import save_metrics, summary
 
 
@@ -27,8 +29,14 @@ def strict(path: Path):
 
 
 def test_trackers_json_holds_the_scores(project, metrics):
-    scores = results.load_json(project.sources.scores / "bowls" / "trackers.json")
-    assert strict(metrics / "trackers.json") == {"bowls": scores, "film": {}}  # the paper tabulates no BowlS tracker
+    scores = {name: results.load_json(project.sources.scores / name / "trackers.json") for name in ("bowls", "film")}
+    assert strict(metrics / "trackers.json") == scores  # the paper tabulates no tracker on BowlS
+
+
+def test_paper_stands_beside_the_trackers_of_its_table(bowls):
+    rows = paper.tracker_rows(replace(bowls, name="heightr"))
+    assert (rows["unsupervised"]["paper_mean_px"], rows["unsupervised"]["paper_var_px2"]) == (3.3, 0.5)
+    assert "paper_mean_px" not in rows["centre"]
 
 
 def test_predictors_json_holds_the_scores_beside_the_papers_figures(project, metrics):
@@ -46,7 +54,7 @@ def test_other_runs_leave_no_trace(metrics):
     text = "".join(path.read_text() for path in metrics.iterdir())
     assert "vin" not in text  # scored, but by another run
     assert "old" not in text
-    assert "probnet" not in json.dumps(strict(metrics / "predictors.json")["bowls"]["truth"])  # not in run.supervised
+    assert "truth" not in strict(metrics / "predictors.json")["film"]  # scored, but not in run.supervised
 
 
 def test_summary_is_flat_and_its_numbers_are_those_of_the_tables(metrics):
@@ -98,6 +106,12 @@ def test_the_papers_tables_name_known_supervisions_and_figures():
     assert all(set(row) == {"mean_px", "var_px2"} for rows in tables["trackers"].values() for row in rows.values())
 
 
+def test_a_predictor_without_scores_is_named(project):
+    run = project.run.model_copy(update={"learned": ["dispnet", "ifs"]})
+    with pytest.raises(InputError, match="lacks scores of tracks ifs, truth ifs"):
+        gather("bowls", run, project.sources, "dispnet")
+
+
 def test_a_missing_score_file_is_named(project):
-    with pytest.raises(InputError, match=r"nowhere.predictors\.json: no such file"):
+    with pytest.raises(InputError, match=r"nowhere.+no such file"):
         project.evidence("nowhere")

@@ -62,7 +62,9 @@ def test_ball_stays_on_the_surface() -> None:
 @pytest.mark.parametrize(("friction", "inertia"), [(0.0, 1.0), (0.8, 7 / 5)])
 def test_small_swing_has_the_pendulums_period(friction: float, inertia: float) -> None:
     """A ball that rolls without slipping swings as a pendulum with 7/5 of its mass to move (1 when it slides)."""
-    bowl = Bowl(BowlParams(kind="bowl", rim_radius_m=(0.3, 0.3), depth_m=(0.1, 0.1), cut=0.75), np.random.default_rng(0))
+    bowl = Bowl(
+        BowlParams(kind="bowl", rim_radius_m=(0.3, 0.3), depth_m=(0.1, 0.1), cut=0.75), np.random.default_rng(0)
+    )
     start = Start(np.array([bowl.point(0.05, 0.3)]), np.zeros(1), np.zeros(1))
     physics = LOSSLESS.model_copy(update={"friction": friction})
     trajectory = roll(bowl, start, RADIUS, 500, FPS, physics)

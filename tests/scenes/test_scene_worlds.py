@@ -79,9 +79,7 @@ def test_track_is_the_motion_of_the_film(world: WorldParams) -> None:
 def test_truth_is_where_the_ball_is_seen(world: WorldParams) -> None:
     """In the decoded film, wobble and all, the middle of what is redder than the rest is the truth to 0.25 px."""
     flat = world.look.model_copy(update={"ambient": 1, "gloss": 0})  # else the lit side pulls the middle
-    one = world.model_copy(
-        update={"balls": world.balls.model_copy(update={"rgb": [(255, 30, 20)]}), "look": flat}
-    )
+    one = world.model_copy(update={"balls": world.balls.model_copy(update={"rgb": [(255, 30, 20)]}), "look": flat})
     recording = record(one, "seen", 0)
     frames = decode(recording.video)
     assert len(frames) == len(recording.xy)
@@ -92,9 +90,7 @@ def test_truth_is_where_the_ball_is_seen(world: WorldParams) -> None:
     assert np.percentile(error, 95) < 0.25
 
 
-def test_stage_writes_videos_and_truth(
-    world: WorldParams, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_stage_writes_videos_and_truth(world: WorldParams, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PHYSPIPE_WORKERS", "1")
     section = {"datasets": {"tiny": {"simulate": world.model_dump(mode="json")}}}

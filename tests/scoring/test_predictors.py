@@ -78,6 +78,7 @@ def test_errors_by_hand(film):
     assert rest["ade_px"] == pytest.approx((2 + 4 + 6 + 8) / 4)  # frames 2 to 5
     curve = horizons[horizons["predictor"] == "persistence"].set_index("frame")["error_px"]
     assert curve[7] == pytest.approx(12)
+    assert horizons["frame"].dtype == int
     assert list(horizons.columns) == ["supervision", "predictor", "frame", "error_px"]
 
 

