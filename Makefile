@@ -3,7 +3,6 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export DVC_NO_ANALYTICS := 1
-export OMP_NUM_THREADS ?= 2
 
 .PHONY: setup repro test lint
 

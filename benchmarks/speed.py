@@ -1,6 +1,6 @@
 """Times the parts that users wait for, on the data sets of the last `dvc repro`; prints a table with its machine.
 
-    python benchmarks/speed.py bowls
+python benchmarks/speed.py bowls
 """
 
 import os
@@ -39,12 +39,11 @@ def main(name: str) -> None:
     clips = ClipSet(Path("data/clips") / name)
     frames = sum(len(clips.rows(each)) for each in clips.names("test"))
     nets = detectors.load(Path("data/tracker") / name / "all" / detectors.WEIGHTS)
-    tracker = detectors.together(
-        nets, read("tracker.readout", ReadoutParams), read("tracker.mask", MaskParams)
-    )
+    tracker = detectors.together(nets, read("tracker.readout", ReadoutParams), read("tracker.mask", MaskParams))
     out = Path(".scratch/benchmark")
     rows = {
-        "inference, frames/s": frames / seconds(lambda: [tracker.track_all(clips.frames(n)) for n in clips.names("test")]),
+        "inference, frames/s": frames
+        / seconds(lambda: [tracker.track_all(clips.frames(n)) for n in clips.names("test")]),
         "train_tracker, s": seconds(stage("stages.train_tracker", f"data/clips/{name}", str(out / "first"))),
         "no-op dvc repro, s": seconds(lambda: subprocess.run(["dvc", "repro", "--quiet"], check=True)),
     }

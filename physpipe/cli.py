@@ -42,8 +42,9 @@ def add(words: argparse.Namespace) -> None:
     found = adding.copy_film(words.folder, raw, annotations)
     with replacing(PARAMS) as temporary:
         temporary.write_text(after)
-    kept = f"{PARAMS} had a section `datasets.{name}`: kept as it was"
-    print(f"{len(found)} recordings in {raw}. {kept if after == before else f'{PARAMS} extended'}.\nNext:")
+    had = name in yaml.safe_load(before)["datasets"]
+    section = "kept as it was" if had else f"copied from `{TEMPLATE}`: look through its other values"
+    print(f"{len(found)} recordings in {raw}. Section `datasets.{name}` of {PARAMS} {section}.\nNext:")
     print(f"  dvc add {raw}")
     print("  dvc repro" if words.run else f"  dvc exp run -S 'run.datasets=[{name}]'")
     if not (annotations / REFERENCE).exists():

@@ -20,7 +20,7 @@ def orbit(frames: int, phase: float, shrink: float = 1.0) -> NDArray[np.float64]
 
 
 def draw(xy: NDArray[np.float64], colours: list[tuple[int, int, int]], seed: int) -> NDArray[np.uint8]:
-    """(T, H, W, 3) frames with a soft disc of 3 px radius at each of (T, K, 2) pixels, on a still texture with noise."""
+    """(T, H, W, 3) frames of soft discs of 3 px radius at (T, K, 2) pixels, on a still texture, with noise."""
     rng = np.random.default_rng(seed)
     ground = rng.uniform(90, 130, (HEIGHT, WIDTH, 1)) + rng.uniform(-10, 10, 3)
     frames = np.repeat(ground[None], len(xy), axis=0)

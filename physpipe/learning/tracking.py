@@ -19,6 +19,7 @@ from physpipe.learning.training import FitParams, fit
 from physpipe.trackers.detectors import together
 from physpipe.trackers.learned import ReadoutParams, cells
 from physpipe.trackers.sequential import MaskParams, hidden_by
+from physpipe.tracknet.losses import motion_target
 from physpipe.tracknet.model import Moments, TrackNet, TrackNetParams
 from physpipe.tracknet.signals import LockParams, SignalParams, Signals, read_signals
 
@@ -46,6 +47,8 @@ class TrackerParams(Section):
     lock: LockParams
     readout: ReadoutParams
     mask: MaskParams
+    least_motion: float = Field(ge=0, le=1)
+    """Share of the motion that must be left outside the masks for there to be another object."""
 
     def chosen(self) -> RecipeParams:
         """The recipe to run; raises InputError for a name that is not in `recipes`."""
@@ -140,10 +143,29 @@ def learn_next(
     recipe, number = params.chosen(), len(found)
     ignored = masks(clips, found, params)
     task = lesson(clips, recipe, params.signals, compute.seed, ignored)
+    left = motion_left(task.held_out, found[0].detector.stride)
+    if left < params.least_motion:
+        reason = (
+            f"asks for more than {number} objects, but beside the first {number} only {left:.0%} of the motion is left"
+        )
+        raise InputError(
+            "params.yaml: `objects` of this data set", reason, "lower it to the number of objects that move"
+        )
     net = _copy(found[0])
     net.restart()
     curve = task.run(net, recipe.rest, 1000 * compute.seed + number, scratch / f"object{number}.pt", f"object {number}")
     return Learned(net, curve, task.read(net), [])
+
+
+def motion_left(batches: list[Moments], stride: int) -> float:
+    """Mean share of a frame's motion residual that lies outside what is ignored."""
+    shares = []
+    for batch in batches:
+        background = batch.background.repeat_interleave(batch.frames.shape[1], 0)
+        target = motion_target(batch.frames.flatten(0, 1), background, stride)
+        hidden = torch.zeros_like(target, dtype=torch.bool) if batch.ignored is None else batch.ignored.flatten(0, 1)
+        shares.append((target * ~hidden).flatten(1).sum(1).mean().item())
+    return float(np.mean(shares))
 
 
 def masks(clips: ClipSet, found: list[TrackNet], params: TrackerParams) -> dict[str, NDArray[np.bool_]]:

@@ -14,13 +14,13 @@ from physpipe.learning import lessons, tracking
 from physpipe.learning.moments import MomentParams
 from physpipe.learning.tracking import RecipeParams, TrackerParams, learn_first, learn_others
 from physpipe.learning.training import FitParams
+from physpipe.trackers import detectors
+from physpipe.trackers.learned import LearnedTracker, ReadoutParams
+from physpipe.trackers.sequential import MaskParams
 from physpipe.tracknet.detector import DetectorParams
 from physpipe.tracknet.discriminator import DiscriminatorParams
 from physpipe.tracknet.model import BottleneckParams, LossParams, TrackNetParams
 from physpipe.tracknet.signals import LockParams, SignalParams, locked
-from physpipe.trackers import detectors
-from physpipe.trackers.learned import LearnedTracker, ReadoutParams
-from physpipe.trackers.sequential import MaskParams
 
 COMPUTE = ComputeParams(seed=0, threads=1)
 
@@ -63,6 +63,7 @@ def params(steps: int, warm: int, rest: int = 40) -> TrackerParams:
         lock=LockParams(order_accuracy=0.8, siamese_px=3, entropy_nats=3.5, motion_share=0.3, extent_px=0.5),
         readout=ReadoutParams(window_px=9, batch_frames=32),
         mask=MaskParams(radius_px=8),
+        least_motion=0.15,
     )
 
 
@@ -98,6 +99,14 @@ def test_two_balls_are_found_one_after_the_other(tmp_path):
         assert min(apart[0, 0] + apart[1, 1], apart[0, 1] + apart[1, 0]) / 2 < 2.5
 
 
+def test_more_objects_than_move_are_refused(tmp_path):
+    clips, _ = orbits(tmp_path / "clips")
+    recipe = params(steps=100, warm=60)
+    first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    with pytest.raises(InputError, match=r"asks for more than 1 objects, but beside the first 1 only .* of the motion"):
+        learn_others(clips, first.net, 2, recipe, COMPUTE, tmp_path / "scratch")
+
+
 def test_a_still_film_that_only_gets_brighter_is_not_locked_on(tmp_path):
     rng = np.random.default_rng(0)
     ground = rng.uniform(60, 120, (worlds.HEIGHT, worlds.WIDTH, 3))
@@ -124,9 +133,10 @@ def test_a_killed_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
             raise Killed
         return draw(self, generator)
 
-    with monkeypatch.context() as patch, pytest.raises(Killed):
+    with monkeypatch.context() as patch:
         patch.setattr(tracking.MomentSampler, "__call__", dies)
-        learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
+        with pytest.raises(Killed):
+            learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
     resumed = learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
     for name, value in whole.net.state_dict().items():
         assert torch.equal(value, resumed.net.state_dict()[name]), name

@@ -11,7 +11,16 @@ import pytest
 from ruamel.yaml import YAML
 
 ROOT = Path(__file__).parents[2]
-PARTS = ["physpipe", "stages", "metrics/templates", "dvc.yaml", "params.yaml", ".dvc/config", ".dvcignore", ".gitignore"]
+PARTS = [
+    "physpipe",
+    "stages",
+    "metrics/templates",
+    "dvc.yaml",
+    "params.yaml",
+    ".dvc/config",
+    ".dvcignore",
+    ".gitignore",
+]
 TINY = {
     "run.datasets": ["bowls"],
     "run.simulated": ["bowls"],

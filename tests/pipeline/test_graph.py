@@ -117,7 +117,9 @@ def test_only_the_stages_named_so_can_reach_truth():
     for name in set(STAGES) - MAY_READ_TRUTH:
         deps = paths(body(name)["deps"])
         assert not [each for each in deps if each.startswith(TRUTH)], name
-        upstream = {maker for dep in deps for out, maker in makers.items() if out.startswith(dep) or dep.startswith(out)}
+        upstream = {
+            maker for dep in deps for out, maker in makers.items() if out.startswith(dep) or dep.startswith(out)
+        }
         assert not upstream & MAY_READ_TRUTH, name
         words = body(name)["cmd"].split()[3:]
         outs = [next(iter(each)) if isinstance(each, dict) else each for each in body(name)["outs"]]

@@ -35,5 +35,7 @@ def test_mirroring_the_kernels_mirrors_the_scores(detector):
     torch.manual_seed(2)
     frames = torch.rand(1, 3, 40, 56)
     mirror = Detector(DetectorParams(width=4, layers=1, stride=detector.stride)).eval()
-    mirror.load_state_dict({name: value.flip(-1) if value.ndim == 4 else value for name, value in detector.state_dict().items()})
+    mirror.load_state_dict(
+        {name: value.flip(-1) if value.ndim == 4 else value for name, value in detector.state_dict().items()}
+    )
     torch.testing.assert_close(mirror(frames.flip(-1)).flip(-1), detector(frames), rtol=1e-4, atol=1e-5)
