@@ -96,14 +96,15 @@ def swapped(found: Floats, truth: Floats, diameter_px: float, frames: int) -> bo
     return longest_run(np.array(exchanged, bool)) >= frames
 
 
-def bootstrap_interval(sums: Floats, counts: Floats, resamples: int, seed: int) -> tuple[float, float]:
+def bootstrap_interval(sums: Floats, counts: Floats, resamples: int) -> tuple[float, float]:
     """95 % interval of sum(sums) / sum(counts) when whole clips are drawn anew; (n,) per clip.
 
     Frames of one clip resemble each other, so the clip, not the frame, is what is drawn.
     """
     if not counts.sum():
         return np.nan, np.nan
-    drawn = np.random.default_rng([seed]).integers(len(sums), size=(resamples, len(sums)))
+    # The same draws for every method, so that their intervals compare.
+    drawn = np.random.default_rng(0).integers(len(sums), size=(resamples, len(sums)))
     with np.errstate(invalid="ignore"):  # a draw of clips without any found frame has no mean
         low, high = np.nanpercentile(sums[drawn].sum(axis=1) / counts[drawn].sum(axis=1), [2.5, 97.5])
     return float(low), float(high)

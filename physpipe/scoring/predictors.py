@@ -25,8 +25,6 @@ class EvaluatePredictorsParams(Section):
 
     bootstrap_resamples: int = Field(ge=1)
     """Draws of clips behind the 95 % intervals."""
-    seed: int = Field(ge=0)
-    """Seed of those draws."""
 
 
 def score_predictors(
@@ -113,7 +111,7 @@ def _figures(
     for name, times in MULTIPLES.items():
         per_clip = errors[errors["frame"] == times * horizon].groupby("clip")["error_px"].agg(["sum", "size"])
         sums, sizes = per_clip["sum"].to_numpy(float), per_clip["size"].to_numpy(float)
-        low, high = bootstrap_interval(sums, sizes, params.bootstrap_resamples, params.seed)
+        low, high = bootstrap_interval(sums, sizes, params.bootstrap_resamples)
         figures |= {
             f"error_{name}_px": reached[name],
             f"error_{name}_px_low": low,

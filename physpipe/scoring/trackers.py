@@ -29,8 +29,6 @@ class EvaluateTrackersParams(Section):
     """Frames in a row with exchanged objects after which a clip counts as swapped."""
     bootstrap_resamples: int = Field(ge=1)
     """Draws of clips behind the 95 % interval of the mean error."""
-    seed: int = Field(ge=0)
-    """Seed of those draws."""
     other_motion: OtherMotionParams
 
 
@@ -116,7 +114,7 @@ def _figures(
     seen = errors.dropna()
     per_clip = seen.groupby("clip")["error_px"].agg(["sum", "size"])
     low, high = metrics.bootstrap_interval(
-        per_clip["sum"].to_numpy(float), per_clip["size"].to_numpy(float), params.bootstrap_resamples, params.seed
+        per_clip["sum"].to_numpy(float), per_clip["size"].to_numpy(float), params.bootstrap_resamples
     )
     pairs = list(zip(found, cases, strict=True))
     limit_px = params.off_track_radii * ball.ball_radius_px

@@ -51,6 +51,7 @@ def test_two_clean_runs_give_identical_metrics(project):
 
 def test_experiments_in_the_workspace_and_in_a_copy_change_what_they_say(project):
     project.run("dvc", "exp", "run", "-n", "rate", "-S", "predictors.dispnet.fit.learning_rate=1e-3")
+    assert project.run("git", "diff", "--numstat", "params.yaml") == "1\t1\tparams.yaml\n", "only its line changes"
     project.run("git", "checkout", "-q", ".")
     project.run("dvc", "checkout", "-q")
     project.run("dvc", "exp", "run", "--temp", "-n", "seed", "-S", "compute.seed=1")

@@ -9,7 +9,7 @@ from physpipe.io.clips import Clip, ClipSet
 from physpipe.scoring.predictors import EvaluatePredictorsParams, calibration, score_predictors
 
 T, LENGTH, FIRST = 5, 13, 2
-PARAMS = EvaluatePredictorsParams(bootstrap_resamples=200, seed=0)
+PARAMS = EvaluatePredictorsParams(bootstrap_resamples=200)
 
 
 def truth_of(number: int, objects: int = 1) -> NDArray[np.float64]:

@@ -20,7 +20,6 @@ PARAMS = EvaluateTrackersParams(
     off_track_frames=10,
     swap_frames=5,
     bootstrap_resamples=200,
-    seed=0,
     other_motion=OtherMotionParams(threshold_grey=25, narrowest_px=5, share=0.01, disc_radii=2),
 )
 HAND = range(4, 8)
