@@ -15,7 +15,6 @@ NOISE_FLOOR = 0.5  # grey levels: what rounding to uint8 alone does to a differe
 BLUR_PX = 1.0  # makes shifts of a pixel or two linear in the slopes, and noise smaller
 COARSE_STEPS = 3
 OUTLIER = 3.0  # times the mean absolute difference
-UNSEEN = 2  # frames
 NOISIEST = 5.0  # times the usual block's; what lies above is motion that never pauses
 QUIET = 0.25  # quantile over time that still is noise when something moves through a block most of the time
 
@@ -44,13 +43,13 @@ class TrimParams(Section):
     """A block moves when its squared difference is this many times its own noise level."""
     min_moving: int = Field(ge=1)
     """Fewer moving frames in a row are a flicker or a codec's key frame, not motion."""
+    margin: int = Field(ge=0)
+    """Frames kept on either side of what moves visibly: about two hold motion too small to be seen; 0 leaves no frame
+    before a sudden release."""
 
 
 def moving_span(frames: NDArray[np.uint8], params: TrimParams) -> tuple[int, int] | None:
-    """First and last frame of (T, H, W, 3) `frames` that move, or None when nothing does.
-
-    `UNSEEN` frames on either side hold motion too small to be seen.
-    """
+    """First and last frame of (T, H, W, 3) `frames` that move, margins included, or None when nothing does."""
     moving = motion(frames, params) > params.threshold
     runs = np.convolve(moving, np.ones(params.min_moving), "valid") == params.min_moving
     found = np.flatnonzero(runs)
@@ -58,7 +57,7 @@ def moving_span(frames: NDArray[np.uint8], params: TrimParams) -> tuple[int, int
         return None
     first_moved = int(found[0]) + 1
     last_to_move = int(found[-1]) + params.min_moving - params.lag
-    return max(first_moved - UNSEEN, 0), min(last_to_move + UNSEEN, len(frames) - 1)
+    return max(first_moved - params.margin, 0), min(last_to_move + params.margin, len(frames) - 1)
 
 
 def motion(frames: NDArray[np.uint8], params: TrimParams) -> NDArray[np.floating]:

@@ -93,4 +93,4 @@ def ingest_params() -> dict[str, Any]:
 @pytest.fixture
 def trim() -> dict[str, Any]:
     """Legal trim params."""
-    return {"lag": 5, "block_px": 8, "wobble_px": 0.1, "threshold": 15, "min_moving": 3}
+    return {"lag": 5, "block_px": 8, "wobble_px": 0.1, "threshold": 15, "min_moving": 3, "margin": 2}
