@@ -16,7 +16,7 @@ FIT = FitParams(
     steps=6, batch_size=4, learning_rate=3e-3, final_rate=0.1, warmup_steps=1, weight_decay=1e-2, clip_norm=1.0,
     valid_every=2, patience=9, precision="bfloat16",
 )  # fmt: skip
-WINDOWS = WindowParams(noise_px=0.1, valid_windows=6)
+WINDOWS = WindowParams(noise_px=0.1, first_share=0.25, valid_windows=6)
 
 
 def learn(found, table, checkpoint):

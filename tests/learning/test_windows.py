@@ -8,7 +8,7 @@ from physpipe.core.errors import InputError
 from physpipe.core.geometry import Geometry
 from physpipe.io import clips, tracks
 from physpipe.io.clips import Clip, ClipSet
-from physpipe.learning.windows import TrackWindows, mirrored
+from physpipe.learning.windows import TrackWindows, WindowParams, mirrored
 
 LENGTH, OBJECTS = 12, 2
 SYMMETRIES = [(x, y, swap) for x in (False, True) for y in (False, True) for swap in (False, True)]
@@ -45,6 +45,10 @@ def made(folder, height=20, width=28, lost=()):
 def windows(folder, split="train", seen_frames=4, horizon=8, **world):
     found, table = made(folder, **world)
     return TrackWindows(found, table, split, seen_frames, horizon)
+
+
+def drawing(noise_px=0.0, first_share=0.0):
+    return WindowParams(noise_px=noise_px, first_share=first_share, valid_windows=8)
 
 
 def lit(frames: np.ndarray, colour: int) -> np.ndarray:
@@ -105,7 +109,7 @@ def test_windows_with_a_lost_object_are_left_out_and_counted(tmp_path):
 def test_draws_turn_square_frames_and_only_mirror_others(tmp_path):
     for name, height, width in (("wide", 20, 28), ("square", 20, 20)):
         found = windows(tmp_path / name, height=height, width=width)
-        drawn = found.draw(32, 0.0, torch_generator(3))
+        drawn = found.draw(32, drawing(), torch_generator(3))
         assert drawn.seen.frames.shape == (32, 4, 3, height, width)
         for frames, xy in zip(drawn.seen.frames, drawn.seen.xy, strict=True):
             np.testing.assert_array_equal(lit(frames.permute(0, 2, 3, 1).numpy(), 0), xy[:, 0].numpy())
@@ -113,10 +117,19 @@ def test_draws_turn_square_frames_and_only_mirror_others(tmp_path):
 
 def test_a_draw_depends_on_its_generator_alone_and_noise_spares_the_target(tmp_path):
     found = windows(tmp_path / "set")
-    quiet, noisy = (found.draw(16, noise, torch_generator(5, 7)) for noise in (0.0, 0.5))
+    quiet, noisy = (found.draw(16, drawing(noise_px=noise), torch_generator(5, 7)) for noise in (0.0, 0.5))
     assert torch.equal(quiet.target, noisy.target)
     assert torch.equal(quiet.seen.frames, noisy.seen.frames)
     assert (noisy.seen.xy - quiet.seen.xy).std().item() == pytest.approx(0.5, rel=0.2)  # px; of 256 draws
+
+
+@pytest.mark.parametrize(("lost", "share"), [([], 1.0), ([(0, 2)], 1.0), ([(0, 2), (1, 2)], 0.0)])
+def test_windows_from_the_clips_beginnings_are_drawn_by_their_share_where_they_can_be_used(tmp_path, lost, share):
+    found = windows(tmp_path / "set", lost=lost)
+    drawn = found.pick(40, 1.0, torch_generator(1))
+    assert np.mean(found.index[drawn, 1] == 0) == share
+    half = found.pick(40, 0.5, torch_generator(1))
+    assert share * 20 <= (found.index[half, 1] == 0).sum() < 40
 
 
 def test_evenly_spread_windows_reach_both_ends(tmp_path):

@@ -10,6 +10,7 @@ import yaml
 from physpipe.core import params
 from physpipe.core.errors import InputError
 from physpipe.scenes.film import Camera
+from physpipe.scenes.physics import DENSITY
 from physpipe.scenes.worlds import WorldParams, record, simulate, track
 from stages.simulate import main
 
@@ -44,6 +45,16 @@ def test_bowls_moves_as_hard_as_the_papers() -> None:
         for frame, paper in zip((20, 40), errors, strict=True):
             error = np.linalg.norm(extrapolated(xy, degree, frame) - xy[:, frame], axis=1).mean()
             assert error == pytest.approx(paper, rel=0.15), (degree, frame)
+
+
+def test_bowls_without_friction_keeps_its_energy_within_one_percent() -> None:
+    bowls = params.read("datasets.bowls.simulate", WorldParams, PARAMS)
+    smooth = bowls.physics.model_copy(update={"friction": 0, "rolling_resistance_m": 0})
+    lossless, radius = bowls.model_copy(update={"physics": smooth}), bowls.balls.radius_m
+    for number in range(12):
+        at_rest = DENSITY * 4 / 3 * np.pi * radius**3 * smooth.gravity_m_s2 * radius  # at the bottom of the bowl
+        energy = track(lossless, "bowls", number).energy_j - at_rest
+        assert np.abs(energy / energy[0] - 1).max() < 0.01
 
 
 def test_most_pairs_of_balls_meet() -> None:
