@@ -1,44 +1,50 @@
-"""Spread over seeds: runs the pipeline once a seed in copies of the workspace, writes mean and worst of every figure.
+"""Spread over seeds: reproduces the committed pipeline once a seed, writes mean and worst of every headline figure.
 
     python benchmarks/seeds.py 0 1 2
 
-Each run is an experiment (`dvc exp run --temp -S compute.seed=N`), so nothing runs twice and nothing in the workspace
-changes but benchmarks/seeds.json.
+Each seed runs in a clone of its own that shares this project's DVC cache, two at a time, so nothing that a seed does
+not touch runs again and the workspace stays as it is. Writes benchmarks/seeds.json.
 """
 
 import json
+import platform
+import re
 import subprocess
 import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from statistics import mean
 
+ROOT = Path(__file__).resolve().parents[1]
 OUT = Path(__file__).with_name("seeds.json")
+AT_ONCE = 2
+Figures = dict[str, float | bool | None]
 
 
-def summary_of(seed: int) -> dict[str, float | bool | None]:
-    """The headline figures of one seed's run."""
-    name = f"seed-{seed}"
-    words = ["dvc", "exp", "run", "--temp", "--force", "--name", name, "--set-param", f"compute.seed={seed}"]
-    subprocess.run(words, check=True)
-    shown = subprocess.run(["git", "show", f"{_ref(name)}:metrics/summary.json"], check=True, capture_output=True)
-    return json.loads(shown.stdout)
+def summary_of(seed: int) -> Figures:
+    """The headline figures of one seed's run of the last commit."""
+    with tempfile.TemporaryDirectory(prefix=f"seed{seed}-") as folder:
+        clone = Path(folder) / "physpipe"
+        subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
+        cache = str(ROOT / ".dvc/cache")
+        for setting, value in (("cache.dir", cache), ("cache.type", "symlink")):
+            subprocess.run(["dvc", "config", "--local", setting, value], cwd=clone, check=True)
+        params = clone / "params.yaml"
+        params.write_text(re.sub(r"^  seed: \d+$", f"  seed: {seed}", params.read_text(), flags=re.MULTILINE))
+        subprocess.run(["dvc", "repro", "--quiet"], cwd=clone, check=True)
+        return json.loads((clone / "metrics/summary.json").read_text())
 
 
-def _ref(name: str) -> str:
-    refs = subprocess.run(["git", "for-each-ref", "--format=%(refname)", "refs/exps"], check=True, capture_output=True)
-    return next(line for line in refs.stdout.decode().split() if line.endswith("/" + name))
-
-
-def spread(runs: list[dict[str, float | bool | None]]) -> dict[str, dict[str, object]]:
-    """Figure to its mean, its worst (largest error, or false) and its value for every seed."""
-    table = {}
+def spread(runs: list[Figures]) -> dict[str, dict[str, object]]:
+    """Figure to its mean and worst over the seeds (largest error; false where any is), and its value for each."""
+    table: dict[str, dict[str, object]] = {}
     for key in runs[0]:
-        values = [run.get(key) for run in runs]
-        numbers = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
-        if len(numbers) == len(values):
-            table[key] = {"mean": round(mean(numbers), 4), "worst": max(numbers), "each": values}
-        else:
-            table[key] = {"mean": None, "worst": all(values) if None not in values else None, "each": values}
+        each = [run[key] for run in runs]
+        numbers = [value for value in each if isinstance(value, float)]
+        known = len(numbers) == len(each)
+        worst = max(numbers) if known else all(each)
+        table[key] = {"mean": round(mean(numbers), 4) if known else None, "worst": worst, "each": each}
     return table
 
 
@@ -46,8 +52,10 @@ def main() -> None:
     """Runs the seeds of the command line."""
     seeds = [int(word) for word in sys.argv[1:]]
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True)
-    table = spread([summary_of(seed) for seed in seeds])
-    OUT.write_text(json.dumps({"commit": commit.stdout.strip(), "seeds": seeds, "figures": table}, indent=1) + "\n")
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        table = spread(list(pool.map(summary_of, seeds)))
+    about = {"commit": commit.stdout.strip(), "machine": platform.platform(), "seeds": seeds}
+    OUT.write_text(json.dumps({**about, "figures": table}, indent=1) + "\n")
     for key, row in table.items():
         print(f"{key:48} mean {row['mean']}  worst {row['worst']}")
 
