@@ -52,7 +52,7 @@ def learn_predictor(
 
     curve = fit(
         predictor,
-        lambda generator: train.draw(fit_params.batch_size, window_params.noise_px, generator),
+        lambda generator: train.draw(fit_params.batch_size, window_params, generator),
         validate,
         fit_params,
         seed,

@@ -25,6 +25,8 @@ class WindowParams(Section):
 
     noise_px: float = Field(ge=0)
     """Standard deviation, a coordinate, of noise added to the seen positions in training; pixels."""
+    first_share: float = Field(ge=0, le=1)
+    """Share of the windows drawn in training that begin at a clip's first frame, as the forecasts do."""
     valid_windows: int = Field(ge=1)
     """Windows of the validation clips, evenly spread, that a validation looks at."""
 
@@ -77,14 +79,23 @@ class TrackWindows:
         frames = as_input(np.stack([frames for frames, _ in cut]))
         return Window(Seen(frames, xy[:, :T0], times[:, :T0]), times[:, -asked:], xy[:, T0:])
 
-    def draw(self, count: int, noise_px: float, generator: torch.Generator) -> Window:
+    def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
         """`count` random windows, randomly mirrored (and turned, if square), with noise on the seen positions."""
-        numbers = torch.randint(len(self), (count,), generator=generator).tolist()
+        numbers = self.pick(count, params.first_share, generator)
         flips = torch.randint(2, (count, 3), generator=generator).bool()
         flips[:, 2] &= self.height == self.width
         drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()])
-        noise = torch.randn(drawn.seen.xy.shape, generator=generator).to(device()) * noise_px
+        noise = torch.randn(drawn.seen.xy.shape, generator=generator).to(device()) * params.noise_px
         return Window(Seen(drawn.seen.frames, drawn.seen.xy + noise, drawn.seen.times), drawn.asked_times, drawn.target)
+
+    def pick(self, count: int, first_share: float, generator: torch.Generator) -> list[int]:
+        """Random window numbers, a share of them from the clips' beginnings where those can be used."""
+        numbers = torch.randint(len(self), (count,), generator=generator)
+        begin = torch.from_numpy(np.flatnonzero(self.index[:, 1] == 0))
+        if len(begin):
+            firsts = round(first_share * count)
+            numbers[:firsts] = begin[torch.randint(len(begin), (firsts,), generator=generator)]
+        return numbers.tolist()
 
     def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         clip, at = self.index[number]

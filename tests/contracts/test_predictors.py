@@ -17,7 +17,7 @@ SMALL = {
     "persistence": NoParams(),
     "linear": NoParams(),
     "quadratic": NoParams(),
-    "dispnet": DispNetParams(stem=8, channels=8, hidden=8, follow=True),
+    "dispnet": DispNetParams(stem=8, channels=8, hidden=8, follow=True, symmetric=True),
 }
 
 

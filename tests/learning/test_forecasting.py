@@ -31,7 +31,7 @@ def test_forecasts_of_free_fall_are_exact(falling_balls):
 def test_a_forecast_ignores_everything_after_the_seen_frames(falling_balls):
     found, table = falling_balls()
     torch.manual_seed(0)
-    net = DispNet(DispNetParams(stem=8, channels=8, hidden=8, follow=True), 1)
+    net = DispNet(DispNetParams(stem=8, channels=8, hidden=8, follow=True, symmetric=True), 1)
     torch.nn.init.normal_(net.change[-1].weight)
     before = forecast(net, found, table, "test", HORIZON, "dispnet").table
     later = table["frame"] >= net.seen_frames

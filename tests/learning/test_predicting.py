@@ -11,7 +11,7 @@ from physpipe.learning.windows import WindowParams
 from physpipe.predictors.dispnet import DispNetParams
 
 HORIZON = 6
-MODEL = DispNetParams(stem=8, channels=8, hidden=8, follow=True)
+MODEL = DispNetParams(stem=8, channels=8, hidden=8, follow=True, symmetric=True)
 FIT = FitParams(
     steps=6, batch_size=4, learning_rate=3e-3, final_rate=0.1, warmup_steps=1, weight_decay=1e-2, clip_norm=1.0,
     valid_every=2, patience=9, precision="bfloat16",

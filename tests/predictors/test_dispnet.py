@@ -7,7 +7,7 @@ from physpipe.predictors.base import Seen, Window
 from physpipe.predictors.dispnet import DispNet, DispNetParams
 
 HEIGHT, WIDTH = 48, 64
-SMALL = DispNetParams(stem=8, channels=16, hidden=16, follow=True)
+SMALL = DispNetParams(stem=8, channels=16, hidden=16, follow=True, symmetric=True)
 
 
 def springs(clips: int, frames: int) -> Window:
