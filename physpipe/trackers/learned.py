@@ -66,7 +66,7 @@ def readout(heat: Tensor, stride: int, window_px: float) -> tuple[Tensor, Tensor
     apart = (xs - xs[columns][:, None]).square()[:, None, :] + (ys - ys[rows][:, None]).square()[:, :, None]
     near = heat * (apart <= window_px**2)
     mass = near.flatten(1).sum(1)
-    return expected_position(near / mass[:, None, None], stride), mass
+    return expected_position(near / mass[:, None, None], stride), mass.clamp_max(1)  # rounding may add up to more
 
 
 def cells(ignore: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:

@@ -35,6 +35,12 @@ def test_a_second_peak_outside_the_window_lowers_the_score_and_moves_nothing():
     assert score.item() == pytest.approx(2 / 3, abs=0.02)
 
 
+def test_no_score_exceeds_one_however_sums_are_rounded():
+    heat = torch.rand(200, 10, 14, generator=torch.Generator().manual_seed(0))
+    _, score = readout(heat / heat.sum((1, 2), keepdim=True), stride=4, window_px=80)
+    assert score.max() <= 1
+
+
 def test_a_window_as_large_as_the_frame_is_the_paper_s_mean():
     heat = bump(12, 12) + bump(44, 30)
     xy, score = readout(heat / heat.sum(), stride=4, window_px=80)
