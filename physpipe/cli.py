@@ -46,7 +46,8 @@ def add(words: argparse.Namespace) -> None:
     section = "kept as it was" if had else f"copied from `{TEMPLATE}`: look through its other values"
     print(f"{len(found)} recordings in {raw}. Section `datasets.{name}` of {PARAMS} {section}.\nNext:")
     print(f"  dvc add {raw}")
-    print("  dvc repro" if words.run else f"  dvc exp run -S 'run.datasets=[{name}]'")
+    alone = f"dvc exp run -S 'run.datasets=[{name}]' -S 'run.simulated=[]' -S 'run.supervised=[]'"
+    print("  dvc repro" if words.run else f"  {alone}")
     if not (annotations / REFERENCE).exists():
         print(f"To have errors measured, put boxes into {annotations / TEMPLATES} (clip names: data/clips/{name}).")
 
