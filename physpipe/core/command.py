@@ -15,8 +15,7 @@ def run(main: Callable[..., None]) -> None:
     if len(words) != len(wanted):
         sys.exit(f"{sys.argv[0]} takes {', '.join(wanted)}; got {len(words)} words")
     values = [
-        Path(word) if each.annotation is Path else word
-        for word, each in zip(words, wanted.values(), strict=True)
+        Path(word) if each.annotation is Path else word for word, each in zip(words, wanted.values(), strict=True)
     ]
     try:
         main(*values)

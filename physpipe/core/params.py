@@ -77,9 +77,7 @@ def _fields_at(kind: type[BaseModel], location: tuple[int | str, ...]) -> list[s
     """Names of the fields of the (nested) params class at `location`."""
     for key in location:
         field = kind.model_fields.get(str(key))
-        if field is None or not (
-            isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel)
-        ):
+        if field is None or not (isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel)):
             return []
         kind = field.annotation
     return list(kind.model_fields)
@@ -95,6 +93,4 @@ def _refuse_foreign_library() -> None:
     root = os.environ.get("DVC_ROOT")
     library = Path(physpipe.__file__).resolve()
     if root and not library.is_relative_to(Path(root).resolve()):
-        raise InputError(
-            library, f"the library lies outside {root}", "run stages as `python -m stages.<name>`"
-        )
+        raise InputError(library, f"the library lies outside {root}", "run stages as `python -m stages.<name>`")

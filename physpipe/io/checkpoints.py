@@ -1,6 +1,7 @@
 """Model weights, and the checkpoints that let a killed training go on."""
 
 import hashlib
+import io
 import os
 import shutil
 from collections.abc import Iterable
@@ -15,9 +16,11 @@ from physpipe.io.atomic import replacing
 
 
 def save(path: Path, state: dict[str, Any]) -> None:
-    """Writes tensors and plain values atomically."""
+    """Writes tensors and plain values atomically; the same values give the same bytes."""
+    buffer = io.BytesIO()  # a file's own name would go into its bytes
+    torch.save(state, buffer)
     with replacing(path) as temporary:
-        torch.save(state, temporary)
+        temporary.write_bytes(buffer.getvalue())
 
 
 def load(path: Path) -> dict[str, Any]:

@@ -42,7 +42,7 @@ def summary(every: Sequence[Evidence], predictor: str) -> dict[str, Any]:
 def _headlines(evidence: Evidence, predictor: str) -> Iterator[tuple[str, Any]]:
     yield "locked", evidence.locked
     ours = evidence.trackers.get("unsupervised", {})
-    for key in ("mean_px", "p99_px", "off_track"):
+    for key in ("mean_px", "median_px", "p99_px", "off_track", "swaps"):
         yield f"unsupervised_{key}", ours.get(key)
     for supervision, rows in evidence.predictors.items():
         for name in dict.fromkeys((predictor, "persistence")):

@@ -62,3 +62,10 @@ def test_forgotten_checkpoints_are_gone(tmp_path: Path) -> None:
     checkpoints.forget(tmp_path / "run")
     checkpoints.forget(tmp_path / "run")
     assert not (tmp_path / "run").exists()
+
+
+def test_the_same_values_give_the_same_bytes_whatever_the_file_is_called(tmp_path):
+    state = {"weights": torch.arange(6.0), "name": "net"}
+    checkpoints.save(tmp_path / "one.pt", state)
+    checkpoints.save(tmp_path / "two.pt", state)
+    assert (tmp_path / "one.pt").read_bytes() == (tmp_path / "two.pt").read_bytes()
