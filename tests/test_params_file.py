@@ -1,0 +1,66 @@
+"""Facts about the project's own params.yaml."""
+
+from pathlib import Path
+
+import pytest
+import torch
+import yaml
+
+from physpipe.core.ball import BallParams
+from physpipe.core.determinism import ComputeParams, torch_generator
+from physpipe.core.params import read, read_value
+from physpipe.core.prediction import PredictParams
+from physpipe.ingest.dataset import IngestParams
+from physpipe.learning.tracking import ObjectsParams, TrackerParams
+from physpipe.report.page import ReportParams
+from physpipe.report.run import RunParams
+from physpipe.scenes.worlds import WorldParams
+from physpipe.tracknet.model import Moments, TrackNet
+
+PATH = Path(__file__).parents[1] / "params.yaml"
+PARAMS = yaml.safe_load(PATH.read_text())
+RECIPES = list(PARAMS["tracker"]["recipes"])
+
+
+@pytest.mark.parametrize("name", list(PARAMS["datasets"]))
+def test_every_data_set_has_all_its_sections(name):
+    kinds = {"ingest": IngestParams, "motion": ObjectsParams, "evaluate": BallParams, "predict": PredictParams}
+    if name in read_value("run.simulated", PATH):
+        kinds["simulate"] = WorldParams
+    assert set(PARAMS["datasets"][name]) == set(kinds)
+    for section, kind in kinds.items():
+        read(f"datasets.{name}.{section}", kind, PATH)
+
+
+def test_what_runs_by_default_needs_no_film_of_the_user():
+    run = read("run", RunParams, PATH)
+    assert set(run.datasets) == set(run.simulated)
+    assert set(run.supervised) <= set(run.datasets)
+    read("report", ReportParams, PATH)
+    read("compute", ComputeParams, PATH)
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_every_recipe_of_the_tracker_takes_a_step(recipe):
+    params = read("tracker", TrackerParams, PATH).model_copy(update={"recipe": recipe}).chosen()
+    net = TrackNet(params.net, frame_size=56)
+    net.steps += params.net.warm_start_steps
+    film = torch.rand(2, 5, 3, 40, 56, generator=torch_generator(0))
+    loss, parts = net.loss(Moments(film, film.mean(1)), torch_generator(1))
+    loss.backward()
+    assert torch.isfinite(loss)
+    assert {"order_nats", "entropy_nats", "siamese_px2"} <= set(parts)
+
+
+def test_the_plain_recipe_is_the_paper_s():
+    net = read("tracker", TrackerParams, PATH).recipes["paper"].net
+    assert (net.losses.causality, net.losses.entropy, net.losses.equivariance) == (1, 0.01, 0.001)
+    assert (net.negatives, net.bottleneck.end_px, net.flicker, net.warm_start_steps) == (0, 0, 0, 0)
+    assert not net.mirrored
+    assert not net.discriminator.shape_only
+
+
+def test_the_file_is_in_block_style_so_that_an_override_changes_one_line():
+    lines = PATH.read_text().splitlines()
+    assert [line for line in lines if len(line) > 80] == []
+    assert [line for line in lines if line.split("#")[0].rstrip().endswith(("}", "]"))] == []
