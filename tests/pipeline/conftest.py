@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
+from ruamel.yaml.representer import RoundTripRepresenter
 
 ROOT = Path(__file__).parents[2]
 PARTS = [
@@ -40,6 +41,13 @@ TINY = {
     "report.clips_shown": 1,
     "report.film.clips": 1,
 }
+
+
+class EmptyNulls(RoundTripRepresenter):
+    """Writes null as nothing, as params.yaml does, whatever other code of this process has taught ruamel.yaml."""
+
+
+EmptyNulls.add_representer(type(None), lambda self, _: self.represent_scalar("tag:yaml.org,2002:null", ""))
 
 
 @dataclass(frozen=True)
@@ -76,6 +84,7 @@ class Project:
     def write(self, values: dict[str, object]) -> None:
         """As `set_params`, from a mapping of dotted keys."""
         yaml, path = YAML(), self.root / "params.yaml"
+        yaml.Representer = EmptyNulls
         tree = yaml.load(path)
         for key, value in values.items():
             *parents, last = key.split(".")
