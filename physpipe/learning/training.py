@@ -12,6 +12,7 @@ from pydantic import Field
 from torch import Tensor, nn
 
 from physpipe.core.determinism import device, torch_generator
+from physpipe.core.errors import InputError
 from physpipe.core.params import Section
 from physpipe.core.progress import progress
 from physpipe.io import checkpoints
@@ -19,6 +20,10 @@ from physpipe.io import checkpoints
 Batch = Any
 Sampler = Callable[[torch.Generator], Batch]
 """Draws one training batch from the generator alone, so that step n sees the same batch in a resumed run."""
+
+
+MOST_LOST = 20
+"""Steps in a row that may teach nothing, since a forecast ran away and its gradient is not finite."""
 
 
 class FitParams(Section):
@@ -62,7 +67,7 @@ class _Run:
         self.optimiser = torch.optim.AdamW(
             model.parameters(), lr=params.learning_rate, weight_decay=params.weight_decay
         )
-        self.step, self.best, self.stale = 0, math.inf, 0
+        self.step, self.best, self.stale, self.lost = 0, math.inf, 0, 0
         self.weights = copy.deepcopy(model.state_dict())
         self.curve: list[dict[str, float]] = []
 
@@ -71,7 +76,13 @@ class _Run:
             "model": self.model.state_dict(),
             "optimiser": self.optimiser.state_dict(),
             "weights": self.weights,
-            "progress": {"step": self.step, "best": self.best, "stale": self.stale, "curve": self.curve},
+            "progress": {
+                "step": self.step,
+                "best": self.best,
+                "stale": self.stale,
+                "lost": self.lost,
+                "curve": self.curve,
+            },
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -129,8 +140,13 @@ def _update(run: _Run, sample: Sampler, generator: torch.Generator) -> dict[str,
     with torch.autocast(where.type, torch.bfloat16, enabled=run.params.precision == "bfloat16"):
         loss, parts = run.model.loss(sample(generator), generator)
     loss.backward()
-    nn.utils.clip_grad_norm_(run.model.parameters(), run.params.clip_norm, error_if_nonfinite=True)
-    run.optimiser.step()
+    norm = nn.utils.clip_grad_norm_(run.model.parameters(), run.params.clip_norm)
+    run.lost = 0 if torch.isfinite(norm) else run.lost + 1
+    if run.lost == 0:
+        run.optimiser.step()
+    elif run.lost == MOST_LOST:
+        reason = f"no finite gradient in {MOST_LOST} steps in a row"
+        raise InputError("this training", reason, "lower its `learning_rate` in params.yaml")
     return {"train": loss.item(), **parts}
 
 

@@ -4,6 +4,7 @@ import pytest
 import torch
 from torch import Tensor, nn
 
+from physpipe.core.errors import InputError
 from physpipe.io import checkpoints
 from physpipe.learning.training import FitParams, fit
 
@@ -97,8 +98,24 @@ def test_the_rate_warms_up_then_falls_by_a_cosine_to_its_final_share(tmp_path):
     assert last == pytest.approx(PARAMS.learning_rate * (0.1 + 0.9 * cosine))
 
 
-def test_a_loss_that_is_not_finite_stops_the_training(tmp_path):
-    model = Line()
-    nn.init.constant_(model.line[2].bias, math.inf)
-    with pytest.raises(RuntimeError, match="non-finite"):
-        learned(tmp_path / "c.pt", model)
+class Runaway(Line):
+    """As Line, but its loss, hence its gradient, is infinite from step `first` to step `last`."""
+
+    def __init__(self, first: int, last: int):
+        super().__init__()
+        self.first, self.last = first, last
+
+    def loss(self, batch: Tensor, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+        loss, parts = super().loss(batch, generator)
+        return loss * (math.inf if self.first <= self.calls <= self.last else 1), parts
+
+
+def test_a_step_whose_gradient_is_not_finite_teaches_nothing_and_ends_nothing(tmp_path):
+    model, curve = learned(tmp_path / "fit.pt", Runaway(first=5, last=6))
+    assert all(torch.isfinite(weights).all() for weights in model.parameters())
+    assert curve["step"].iloc[-1] == PARAMS.steps
+
+
+def test_a_training_that_never_has_a_finite_gradient_is_ended_with_the_mend(tmp_path):
+    with pytest.raises(InputError, match=r"no finite gradient in 20 steps in a row.*learning_rate"):
+        learned(tmp_path / "fit.pt", Runaway(first=1, last=99), PARAMS.model_copy(update={"steps": 40}))
