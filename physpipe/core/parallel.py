@@ -32,7 +32,9 @@ def in_parallel(
 
 def worker_count() -> int:
     """Processes to use on this machine."""
-    return int(os.environ.get("PHYSPIPE_WORKERS") or len(os.sched_getaffinity(0)))
+    # Linux alone tells which cores a process may use; elsewhere it may use all.
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return int(os.environ.get("PHYSPIPE_WORKERS") or cores)
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """A folder of recordings to a set of clips."""
 
 import hashlib
-import os
 import re
 import sys
 from collections import Counter
@@ -17,6 +16,7 @@ from pydantic import Field, model_validator
 from physpipe.core.errors import DiskFullError, InputError
 from physpipe.core.parallel import in_parallel
 from physpipe.core.params import Section
+from physpipe.core.scratch import scratch_root
 from physpipe.ingest import recording
 from physpipe.io import packed, video
 from physpipe.io.clips import SPLITS, Clip, Split
@@ -71,7 +71,7 @@ def ingest(name: str, raw: Path, params: IngestParams) -> tuple[Iterator[Clip], 
     """
     found = video.recordings(raw)
     _refuse_shared_names(found)
-    store = Path(os.environ.get("PHYSPIPE_SCRATCH") or ".scratch") / "ingest" / name
+    store = scratch_root() / "ingest" / name
     work = partial(_converted, store=store, params=params.conversion())
     results = dict(zip(found, in_parallel(work, found, f"ingest {name}"), strict=True))
     bad = {path: result for path, result in results.items() if isinstance(result, InputError)}

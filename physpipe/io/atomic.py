@@ -50,5 +50,6 @@ def replacing_folder(path: Path) -> Iterator[Path]:
 
 def _named(error: OSError, path: Path) -> Exception:
     """A full disk as the user's business; numpy's short writes come without an error number."""
-    full = error.errno in (errno.ENOSPC, errno.EDQUOT) or " requested and " in str(error)
+    quota = getattr(errno, "EDQUOT", errno.ENOSPC)  # Windows has no such number
+    full = error.errno in (errno.ENOSPC, quota) or " requested and " in str(error)
     return DiskFullError(path) if full else error

@@ -2,7 +2,6 @@
 
 import hashlib
 import io
-import os
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
@@ -12,6 +11,7 @@ import torch
 from pydantic import BaseModel
 
 from physpipe.core.errors import InputError
+from physpipe.core.scratch import scratch_root
 from physpipe.io.atomic import replacing
 
 
@@ -52,7 +52,7 @@ def scratch(stage: str, params: Iterable[BaseModel], inputs: Iterable[Path]) -> 
     package = Path(__file__).resolve().parents[1]
     for path in [*sorted(package.rglob("*.py")), *(file for each in inputs for file in _files(each))]:
         digest.update(path.name.encode() + hashlib.sha256(path.read_bytes()).digest())
-    return Path(os.environ.get("PHYSPIPE_SCRATCH") or ".scratch") / stage / digest.hexdigest()[:16]
+    return scratch_root() / stage / digest.hexdigest()[:16]
 
 
 def _files(path: Path) -> list[Path]:

@@ -16,7 +16,6 @@ from physpipe.io.atomic import replacing_folder
 
 Split = Literal["train", "valid", "test"]
 SPLITS: tuple[Split, ...] = get_args(Split)
-STATUSES = ("ok", "decode_error", "missing")
 TABLE = "clips.parquet"
 RECORDINGS = "recordings.csv"
 GEOMETRY = ["left", "top", "crop_width", "crop_height", "width", "height"]
@@ -41,7 +40,7 @@ class Clip:
     source_times_s: NDArray[np.float64]
     """(T,) seconds in the recording."""
     status: NDArray[np.str_]
-    """(T,) one of STATUSES."""
+    """(T,) `ok`, `decode_error` or `missing`."""
 
 
 class ClipSet:

@@ -1,18 +1,14 @@
 """The forecast table: one row per clip, object and frame that was asked for."""
 
-import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from physpipe.core.errors import InputError
-from physpipe.io.atomic import replacing
+from physpipe.io import tables
 
 SCHEMA_VERSION = 1
 KEY = ["clip", "object", "frame"]
@@ -71,34 +67,16 @@ def save(path: Path, table: pd.DataFrame, producer: str, seen_frames: int, horiz
     """Checks, sorts and writes the table; `producer`, the frames seen and T go into the metadata."""
     table = table.astype(_types(list(table.columns))).sort_values(KEY, ignore_index=True)
     check(path, table)
-    arrow = pa.Table.from_pandas(table, preserve_index=False)
-    ours = {
-        "version": SCHEMA_VERSION,
-        "producer": producer,
-        "seen_frames": seen_frames,
-        "horizon": horizon,
-    }
-    kept = {**(arrow.schema.metadata or {}), b"physpipe": json.dumps(ours, sort_keys=True).encode()}
-    with replacing(path) as temporary:
-        pq.write_table(arrow.replace_schema_metadata(kept), temporary)
+    about = {"version": SCHEMA_VERSION, "producer": producer, "seen_frames": seen_frames, "horizon": horizon}
+    tables.write(path, table, about)
 
 
 def load(path: Path) -> pd.DataFrame:
     """Reads and checks a forecast table; raises InputError naming the file and the first bad row."""
-    if not path.is_file():
-        raise InputError(path, "no such file", "run `dvc repro`, which makes it")
-    table = pq.read_table(path).to_pandas()
-    missing = set(DTYPES) - set(table.columns)
-    if missing:
-        raise InputError(path, f"not a forecast table: lacks {sorted(missing)}", "make it again with `dvc repro`")
+    table = tables.read(path, DTYPES, "forecast table")
     table = table.astype(_types(list(table.columns)))
     check(path, table)
     return table
-
-
-def metadata(path: Path) -> Mapping[str, object]:
-    """What `save` wrote beside the rows: version, producer, seen_frames, horizon."""
-    return json.loads(pq.read_schema(path).metadata[b"physpipe"])
 
 
 def check(path: Path, table: pd.DataFrame) -> None:
@@ -110,11 +88,7 @@ def check(path: Path, table: pd.DataFrame) -> None:
     if "cov_xx" in table:
         determinant = table["cov_xx"] * table["cov_yy"] - table["cov_xy"] ** 2
         faults["has no positive covariance"] = ~((table["cov_xx"] > 0) & (determinant > 0))
-    for fault, bad in faults.items():
-        if bad.any():
-            row = table[bad].iloc[0]
-            where = f"clip {row['clip']}, object {row['object']}, frame {row['frame']}"
-            raise InputError(path, f"row of {where} {fault} ({int(bad.sum())} such rows)", "correct the rows")
+    tables.refuse_rows(path, table, faults)
     spans = table.groupby(["clip", "object"])["frame"].agg(["min", "max", "size"])
     gaps = spans[spans["max"] - spans["min"] + 1 != spans["size"]]
     uneven = spans.groupby("clip")[["min", "max"]].nunique().max(axis=1) > 1

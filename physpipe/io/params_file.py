@@ -86,8 +86,4 @@ def _changed(block: str, name: str, changes: dict[str, Any]) -> str:
 def _yaml() -> YAML:
     yaml = YAML()
     yaml.width = 80
-    yaml.representer.add_representer(type(None), lambda dumper, _: dumper.represent_scalar(_NULL, "null"))
     return yaml
-
-
-_NULL = "tag:yaml.org,2002:null"

@@ -1,22 +1,20 @@
 """THE track table: truth, tracks and baselines alike, one row per clip, object and frame."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from physpipe.core.errors import InputError
-from physpipe.io.atomic import replacing, replacing_folder
+from physpipe.io import tables
+from physpipe.io.atomic import replacing_folder
 from physpipe.io.clips import ClipSet
 
 SCHEMA_VERSION = 1
 KEY = ["clip", "object", "frame"]
-STATUSES = ("tracked", "lost", "corrected", "exact", "reference")
+STATUSES = ("tracked", "lost", "corrected", "reference")
 DTYPES = {
     "clip": "str",
     "object": "int16",
@@ -88,22 +86,13 @@ def save(path: Path, table: pd.DataFrame, producer: str, clips: ClipSet) -> None
     """Checks, sorts and writes the table; schema version, producer and geometry go into the metadata."""
     table = table.astype(DTYPES).sort_values(KEY, ignore_index=True)
     check(path, table)
-    arrow = pa.Table.from_pandas(table, preserve_index=False)
-    arrow = arrow.set_column(arrow.schema.get_field_index("status"), "status", arrow["status"].dictionary_encode())
-    ours = {"version": SCHEMA_VERSION, "producer": producer, "geometry": _geometries(clips)}
-    metadata = {**(arrow.schema.metadata or {}), b"physpipe": json.dumps(ours, sort_keys=True).encode()}
-    with replacing(path) as temporary:
-        pq.write_table(arrow.replace_schema_metadata(metadata), temporary)
+    about = {"version": SCHEMA_VERSION, "producer": producer, "geometry": _geometries(clips)}
+    tables.write(path, table, about, categories=["status"])
 
 
 def load(path: Path) -> pd.DataFrame:
     """Reads and checks a track table; raises InputError naming the file and the first bad row."""
-    if not path.is_file():
-        raise InputError(path, "no such file", "run `dvc repro`, which makes it")
-    table = pq.read_table(path).to_pandas()
-    missing = set(DTYPES) - set(table.columns)
-    if missing:
-        raise InputError(path, f"not a track table: lacks {sorted(missing)}", "make it again with `dvc repro`")
+    table = tables.read(path, DTYPES, "track table")
     table = table.astype(DTYPES)
     check(path, table)
     return table
@@ -123,24 +112,16 @@ def load_folder(folder: Path) -> dict[str, pd.DataFrame]:
     return {path.stem: load(path) for path in sorted(folder.glob("*.parquet"))}
 
 
-def metadata(path: Path) -> Mapping[str, object]:
-    """What `save` wrote beside the rows: version, producer, geometry of each clip in its source."""
-    return json.loads(pq.read_schema(path).metadata[b"physpipe"])
-
-
 def check(path: Path, table: pd.DataFrame) -> None:
-    """Raises InputError for repeated keys, gaps, scores outside [0, 1] or positions that belie `visible`."""
+    """Raises InputError: repeated keys, gaps, scores beyond [0, 1], unknown statuses, positions that belie visible."""
     faults = {
         "repeats clip, object, frame": table.duplicated(KEY),
+        f"has a status other than {', '.join(STATUSES)}": ~table["status"].isin(STATUSES),
         "has a score outside [0, 1]": ~table["score"].between(0, 1),
         "is visible without a position": table["visible"] & table[["x", "y"]].isna().any(axis=1),
         "has a position but is not visible": ~table["visible"] & table[["x", "y"]].notna().any(axis=1),
     }
-    for fault, bad in faults.items():
-        if bad.any():
-            row = table[bad].iloc[0]
-            where = f"clip {row['clip']}, object {row['object']}, frame {row['frame']}"
-            raise InputError(path, f"row of {where} {fault} ({int(bad.sum())} such rows)", "correct the rows")
+    tables.refuse_rows(path, table, faults)
     spans = table.groupby(["clip", "object"])["frame"].agg(["min", "max", "size"])
     gaps = spans[(spans["min"] != 0) | (spans["max"] + 1 != spans["size"])]
     lengths = spans.groupby("clip")["size"].nunique()

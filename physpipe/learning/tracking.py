@@ -19,7 +19,6 @@ from physpipe.learning.training import FitParams, fit
 from physpipe.trackers.detectors import together
 from physpipe.trackers.learned import ReadoutParams, cells
 from physpipe.trackers.sequential import MaskParams, hidden_by
-from physpipe.tracknet.losses import motion_target
 from physpipe.tracknet.model import Moments, TrackNet, TrackNetParams
 from physpipe.tracknet.signals import LockParams, SignalParams, Signals, read_signals
 
@@ -64,7 +63,6 @@ class Lesson:
     train: MomentSampler
     held_out: list[Moments]
     signals: SignalParams
-    seed: int
 
     def read(self, net: TrackNet) -> Signals:
         """Signals on the held-out batches; the same noise for every network and time."""
@@ -92,20 +90,18 @@ class Learned:
 Ignored = Mapping[str, NDArray[np.bool_]]
 
 
-def lesson(
-    clips: ClipSet, recipe: RecipeParams, signals: SignalParams, seed: int, ignored: Ignored | None = None
-) -> Lesson:
+def lesson(clips: ClipSet, recipe: RecipeParams, signals: SignalParams, ignored: Ignored | None = None) -> Lesson:
     """Moments of the training clips to learn from and of the validation clips to judge by."""
     train = MomentSampler(clips, clips.names("train"), recipe.moments, recipe.rest.batch_size, ignored)
     valid = MomentSampler(clips, clips.names("valid"), recipe.moments, recipe.rest.batch_size, ignored)
     held_out = [valid(torch_generator(1, number)) for number in range(signals.batches)]
-    return Lesson(train, held_out, signals, seed)
+    return Lesson(train, held_out, signals)
 
 
 def learn_first(clips: ClipSet, params: TrackerParams, compute: ComputeParams, scratch: Path) -> Learned:
     """T1: `starts` short trainings, then the rest of the training for the best of them."""
     recipe = params.chosen()
-    task = lesson(clips, recipe, params.signals, compute.seed)
+    task = lesson(clips, recipe, params.signals)
     nets, curves = [], []
     for number in range(recipe.starts):
         torch.manual_seed(int(torch.randint(2**31, (), generator=torch_generator(compute.seed, number))))
@@ -142,15 +138,11 @@ def learn_next(
     """The next detector: the first one's weights, fine-tuned with all earlier objects masked out."""
     recipe, number = params.chosen(), len(found)
     ignored = masks(clips, found, params)
-    task = lesson(clips, recipe, params.signals, compute.seed, ignored)
+    task = lesson(clips, recipe, params.signals, ignored)
     left = motion_left(task.held_out, found[0].detector.stride)
     if left < params.least_motion:
-        reason = (
-            f"asks for more than {number} objects, but beside the first {number} only {left:.0%} of the motion is left"
-        )
-        raise InputError(
-            "params.yaml: `objects` of this data set", reason, "lower it to the number of objects that move"
-        )
+        reason = f"asks for more than {number} objects; beside the first {number} only {left:.0%} of the motion is left"
+        raise InputError("params.yaml: `objects` of this data set", reason, "lower it to the number that move")
     net = _copy(found[0])
     net.restart()
     curve = task.run(net, recipe.rest, 1000 * compute.seed + number, scratch / f"object{number}.pt", f"object {number}")
@@ -159,12 +151,7 @@ def learn_next(
 
 def motion_left(batches: list[Moments], stride: int) -> float:
     """Mean share of a frame's motion residual that lies outside what is ignored."""
-    shares = []
-    for batch in batches:
-        background = batch.background.repeat_interleave(batch.frames.shape[1], 0)
-        target = motion_target(batch.frames.flatten(0, 1), background, stride)
-        hidden = torch.zeros_like(target, dtype=torch.bool) if batch.ignored is None else batch.ignored.flatten(0, 1)
-        shares.append((target * ~hidden).flatten(1).sum(1).mean().item())
+    shares = [batch.outside_mask(batch.motion(stride)).flatten(1).sum(1).mean().item() for batch in batches]
     return float(np.mean(shares))
 
 

@@ -4,12 +4,12 @@ import copy
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import pandas as pd
 import torch
 from pydantic import Field
-from torch import Tensor, nn
+from torch import nn
 
 from physpipe.core.determinism import device, torch_generator
 from physpipe.core.errors import InputError
@@ -49,14 +49,6 @@ class FitParams(Section):
     """Validations without a gain before stopping."""
     precision: Literal["float32", "bfloat16"]
     """Type of the autocast forward pass."""
-
-
-class Learner(Protocol):
-    """A module that owns its loss."""
-
-    def loss(self, batch: Batch, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
-        """The scalar to minimise and its parts, to be logged; all randomness comes from `generator`."""
-        ...
 
 
 class _Run:
@@ -109,8 +101,9 @@ def fit(
     checkpoint: Path,
     what: str,
 ) -> pd.DataFrame:
-    """Leaves `model` with the weights of its lowest `validate()`; returns the curve, a row a validation.
+    """Fits `model`, a module whose `loss(batch, generator)` gives a scalar and its parts, and no other randomness.
 
+    Leaves it with the weights of its lowest `validate()`; returns the curve, a row a validation.
     Goes on from `checkpoint` when that file exists, which its caller removes once the result is safe.
     """
     run = _Run(model.to(device(), memory_format=torch.channels_last), params)

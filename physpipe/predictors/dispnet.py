@@ -25,6 +25,8 @@ SPEED = 1 / 16
 """A lively displacement a frame, in halves of the frame's longer side; brings inputs near 1."""
 CHANGE = 1 / 128
 """A lively change of it a frame; brings outputs near 1."""
+FASTEST = 1.0
+"""Largest displacement a frame, in halves of the frame's longer side: nothing that can be followed is as fast."""
 WEIGHT = 0.3
 """A lively weight of a seen position; the least-squares slope through four has 0.3 at its ends."""
 POWERS = 6
@@ -108,6 +110,7 @@ class DispNet(Predictor):
             read = [read_at(state, weights), everywhere, read_at(scene, weights), mark, known / SPEED]
             law = self.change(torch.cat(read, dim=2)).float().unflatten(2, (2, POWERS))
             displacement = displacement + CHANGE * (law @ _powers(known / SPEED).unsqueeze(3)).squeeze(3)
+            displacement = displacement.clamp(-FASTEST, FASTEST)  # else the law's square term may run away
             place = place + displacement
             path.append(place)
             if self.follow:

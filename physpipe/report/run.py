@@ -10,7 +10,7 @@ import pandas as pd
 from physpipe.core.errors import InputError
 from physpipe.core.params import Section
 from physpipe.core.prediction import BASELINES
-from physpipe.io import forecasts, results, tracks
+from physpipe.io import forecasts, results, tables, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.report.curves import learning_curves
 
@@ -116,7 +116,7 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
         horizons=_horizons(scores / "horizons.csv", supervisions, run.predictors),
         learning=learning_curves(_curve_files(name, run, sources)),
         forecast=forecasts.load(forecast),
-        horizon=int(str(forecasts.metadata(forecast)["horizon"])),
+        horizon=tables.metadata(forecast)["horizon"],
         heat_maps=[path.read_bytes() for path in heat_maps if path.is_file()],
         locked=bool(verdict["locked"]),
         signals=verdict["objects"],

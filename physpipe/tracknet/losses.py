@@ -12,9 +12,13 @@ def causality(judge: Discriminator, xy: Tensor, negatives: int, generator: torch
 
     Scoring several shuffles of the same positions has the expectation of the paper's 50/50 coin and far less variance.
     """
-    orders = shuffles(negatives, len(xy), generator).to(xy.device)
-    shuffled = xy[torch.arange(len(xy), device=xy.device)[:, None, None], orders]
-    return 0.5 * (F.softplus(-judge(xy)).mean() + F.softplus(judge(shuffled)).mean())
+    return 0.5 * (F.softplus(-judge(xy)).mean() + F.softplus(judge(shuffled(xy, negatives, generator))).mean())
+
+
+def shuffled(xy: Tensor, count: int, generator: torch.Generator) -> Tensor:
+    """(B, count, 5, 2): (B, 5, 2) positions in `count` unnatural orders each."""
+    orders = shuffles(count, len(xy), generator).to(xy.device)
+    return xy[torch.arange(len(xy), device=xy.device)[:, None, None], orders]
 
 
 def causality_by_coin(judge: Discriminator, xy: Tensor, generator: torch.Generator) -> Tensor:

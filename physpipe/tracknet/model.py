@@ -78,6 +78,15 @@ class Moments:
     ignored: Tensor | None = None
     """(B, 5, h, w) heat-map cells where nothing may be found (sequential masking), or None."""
 
+    def motion(self, stride: int) -> Tensor:
+        """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included."""
+        background = self.background.repeat_interleave(self.frames.shape[1], 0)
+        return motion_target(self.frames.flatten(0, 1), background, stride)
+
+    def outside_mask(self, cells: Tensor) -> Tensor:
+        """(B * 5, h, w) `cells`, 0 where ignored."""
+        return cells if self.ignored is None else cells * ~self.ignored.flatten(0, 1)
+
 
 class TrackNet(nn.Module):
     """Detector and discriminator with their losses; what is learned without labels."""
@@ -114,10 +123,7 @@ class TrackNet(nn.Module):
         return self._paper(batch, frames, logits, generator)
 
     def _warm_start(self, batch: Moments, logits: Tensor) -> tuple[Tensor, dict[str, float]]:
-        background = batch.background.repeat_interleave(batch.frames.shape[1], 0)
-        target = motion_target(batch.frames.flatten(0, 1), background, self.detector.stride)
-        if batch.ignored is not None:
-            target = target * ~batch.ignored.flatten(0, 1)
+        target = batch.outside_mask(batch.motion(self.detector.stride))
         loss = motion_cross_entropy(logits, target)
         return loss, {"motion_nats": loss.item()}
 

@@ -7,9 +7,8 @@ from pydantic import Field
 from torch import Tensor
 
 from physpipe.core.params import Section
-from physpipe.tracknet.discriminator import shuffles
-from physpipe.tracknet.heatmap import distribution, entropy, expected_position
-from physpipe.tracknet.losses import causality, motion_target, turned, turned_back
+from physpipe.tracknet.heatmap import cell_centres, distribution, entropy, expected_position
+from physpipe.tracknet.losses import causality, shuffled, turned, turned_back
 from physpipe.tracknet.model import Moments, TrackNet, masked
 
 
@@ -103,15 +102,13 @@ def _of_batch(net: TrackNet, batch: Moments, params: SignalParams, generator: to
 
 
 def _accuracy(net: TrackNet, xy: Tensor, generator: torch.Generator) -> Tensor:
-    orders = shuffles(8, len(xy), generator).to(xy.device)
-    shuffled = xy[torch.arange(len(xy), device=xy.device)[:, None, None], orders]
-    return 0.5 * ((net.judge(xy) > 0).float().mean() + (net.judge(shuffled) < 0).float().mean())
+    unnatural = shuffled(xy, 8, generator)
+    return 0.5 * ((net.judge(xy) > 0).float().mean() + (net.judge(unnatural) < 0).float().mean())
 
 
 def _motion_share(batch: Moments, xy: Tensor, stride: int, near_px: float) -> Tensor:
-    background = batch.background.repeat_interleave(batch.frames.shape[1], 0)
-    target = motion_target(batch.frames.flatten(0, 1), background, stride)
-    rows, columns = torch.meshgrid(*(torch.arange(size) for size in target.shape[1:]), indexing="ij")
-    cells = torch.stack([columns, rows], -1).to(xy) * stride + (stride - 1) / 2
-    near = (cells - xy[:, None, None]).square().sum(-1) <= near_px**2
-    return (target * near).flatten(1).sum(1).mean()
+    motion = batch.motion(stride)
+    xs, ys = (cell_centres(count, stride).to(xy) for count in (motion.shape[2], motion.shape[1]))
+    across, down = (xs - xy[:, :1]).square(), (ys - xy[:, 1:]).square()
+    near = across[:, None, :] + down[:, :, None] <= near_px**2
+    return (motion * near).flatten(1).sum(1).mean()

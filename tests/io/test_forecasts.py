@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 from physpipe.core.errors import InputError
-from physpipe.io import forecasts
+from physpipe.io import forecasts, tables
 
 N, OBJECTS, FIRST = 5, 2, 4
 
@@ -25,7 +25,7 @@ def test_what_is_saved_comes_back(tmp_path, cov):
     forecasts.save(path, table, "net", seen_frames=4, horizon=3)
     back = forecasts.load(path)
     pd.testing.assert_frame_equal(back, table.sort_values(forecasts.KEY, ignore_index=True))
-    assert forecasts.metadata(path) == {"version": 1, "producer": "net", "seen_frames": 4, "horizon": 3}
+    assert tables.metadata(path) == {"version": 1, "producer": "net", "seen_frames": 4, "horizon": 3}
 
 
 def test_a_clips_arrays_are_those_it_was_made_of():

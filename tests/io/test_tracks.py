@@ -8,7 +8,7 @@ import pytest
 
 from physpipe.core.errors import InputError
 from physpipe.core.geometry import Geometry
-from physpipe.io import clips, tracks
+from physpipe.io import clips, tables, tracks
 from physpipe.io.clips import Clip, ClipSet
 
 H, W, T, K = 24, 40, 5, 2
@@ -52,7 +52,7 @@ def test_positions_come_back_and_a_lost_object_keeps_its_rows(tmp_path: Path, fi
 
 def test_the_metadata_lead_back_to_the_source(tmp_path: Path, film: ClipSet) -> None:
     tracks.save(tmp_path / "t.parquet", table(), "test", film)
-    said = tracks.metadata(tmp_path / "t.parquet")
+    said = tables.metadata(tmp_path / "t.parquet")
     assert said["producer"] == "test"
     assert said["geometry"]["a"] == [100, 60, 4 * W, 4 * H, W, H]  # type: ignore[index]
 

@@ -103,7 +103,7 @@ def test_more_objects_than_move_are_refused(tmp_path):
     clips, _ = orbits(tmp_path / "clips")
     recipe = params(steps=100, warm=60)
     first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
-    with pytest.raises(InputError, match=r"asks for more than 1 objects, but beside the first 1 only .* of the motion"):
+    with pytest.raises(InputError, match=r"asks for more than 1 objects; beside the first 1 only .* of the motion"):
         learn_others(clips, first.net, 2, recipe, COMPUTE, tmp_path / "scratch")
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
-from ruamel.yaml.representer import RoundTripRepresenter
 
 ROOT = Path(__file__).parents[2]
 PARTS = [
@@ -43,11 +42,12 @@ TINY = {
 }
 
 
-class EmptyNulls(RoundTripRepresenter):
-    """Writes null as nothing, as params.yaml does, whatever other code of this process has taught ruamel.yaml."""
-
-
-EmptyNulls.add_representer(type(None), lambda self, _: self.represent_scalar("tag:yaml.org,2002:null", ""))
+def environment() -> dict[str, str]:
+    """This process's, less what would steer DVC or Git, with the commands of this virtual environment first."""
+    plain = {name: value for name, value in os.environ.items() if not name.startswith(("DVC_", "GIT_"))}
+    plain.pop("PYTHONDONTWRITEBYTECODE", None)  # compiled files must not mark a stage as changed
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    return plain | {"PATH": path, "DVC_NO_ANALYTICS": "1", "PHYSPIPE_WORKERS": "1", "OMP_NUM_THREADS": "1"}
 
 
 @dataclass(frozen=True)
@@ -58,16 +58,8 @@ class Project:
 
     def run(self, *words: str, succeeds: bool = True) -> str:
         """What the command prints; fails the test when its exit status is not the one expected."""
-        environment = {name: value for name, value in os.environ.items() if not name.startswith(("DVC_", "GIT_"))}
-        environment |= {
-            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
-            "DVC_NO_ANALYTICS": "1",
-            "PHYSPIPE_WORKERS": "1",
-            "OMP_NUM_THREADS": "1",
-        }
-        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # compiled files must not mark a stage as changed
         done = subprocess.run(
-            words, cwd=self.root, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+            words, cwd=self.root, env=environment(), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
         )
         assert (done.returncode == 0) == succeeds, done.stdout[-3000:]
         return done.stdout
@@ -77,14 +69,14 @@ class Project:
         printed = self.run("dvc", "repro", *words)
         return {line.split("'")[1] for line in printed.splitlines() if line.startswith("Running stage '")}
 
-    def set_params(self, **values: object) -> None:
-        """Writes values into params.yaml by dotted key (`__` for the dots)."""
-        self.write({name.replace("__", "."): value for name, value in values.items()})
+    def start(self, *words: str) -> subprocess.Popen:
+        """The command as a process group of its own, to be killed."""
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        return subprocess.Popen(words, cwd=self.root, env=environment(), start_new_session=True, **quiet)
 
     def write(self, values: dict[str, object]) -> None:
-        """As `set_params`, from a mapping of dotted keys."""
+        """Writes values into params.yaml by dotted key."""
         yaml, path = YAML(), self.root / "params.yaml"
-        yaml.Representer = EmptyNulls
         tree = yaml.load(path)
         for key, value in values.items():
             *parents, last = key.split(".")

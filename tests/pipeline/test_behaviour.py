@@ -2,10 +2,7 @@
 
 import json
 import os
-import shutil
 import signal
-import subprocess
-import sys
 import time
 
 TRACKING = {"train_tracker@bowls", "mask_objects@bowls"}
@@ -71,20 +68,18 @@ def test_metrics_and_plots_of_two_commits_compare(project):
     assert "error" in page
 
 
-def test_a_killed_training_resumes_to_the_same_weights(project):
-    before = (project.root / "dvc.lock").read_bytes()
-    trained = project.root / "data/tracker/bowls/first"
-    shutil.rmtree(trained)
-    words = [sys.executable, "-m", "stages.train_tracker", "data/clips/bowls", "data/tracker/bowls/first"]
-    scratch = project.root / ".scratch/train_tracker"
-    environment = os.environ | {"OMP_NUM_THREADS": "1"}
-    training = subprocess.Popen(words, cwd=project.root, env=environment, stderr=subprocess.DEVNULL)
-    while not list(scratch.glob("*/start0.pt")) and training.poll() is None:
+def test_a_training_killed_in_a_repro_resumes_on_the_next_one_to_the_same_weights(project):
+    stage, scratch = "train_tracker@bowls", project.root / ".scratch/train_tracker"
+    project.write({"compute.seed": 1})
+    killed = project.start("dvc", "repro", stage)
+    while not list(scratch.glob("*/start0.pt")) and killed.poll() is None:
         time.sleep(0.01)
-    training.send_signal(signal.SIGKILL)
-    training.wait()
-    assert not trained.exists(), "killed after its first checkpoint, before its result"
-    project.run(*words)
-    project.run("dvc", "commit", "--force", "--quiet", "train_tracker@bowls")
-    assert (project.root / "dvc.lock").read_bytes() == before
+    os.killpg(killed.pid, signal.SIGKILL)
+    killed.wait()
+    assert list(scratch.glob("*/start0.pt")), "killed after its first checkpoint"
+    assert not (project.root / "data/tracker/bowls/first").exists(), "and before its result"
+    assert project.repro(stage) == {stage}
     assert not list(scratch.glob("*")), "checkpoints go when the result is written"
+    resumed = (project.root / "dvc.lock").read_bytes()
+    assert project.repro("--force", "--single-item", stage) == {stage}
+    assert (project.root / "dvc.lock").read_bytes() == resumed, "an undisturbed training gives the same bytes"

@@ -87,3 +87,14 @@ def test_several_objects_on_frames_that_no_power_of_two_divides():
     net = dispnet(objects=2)
     seen = Seen(torch.rand(1, 4, 3, 50, 70), 30 * torch.rand(1, 4, 2, 2), torch.arange(4.0)[None])
     assert net(seen, torch.tensor([[4.0, 9.0]])).mean.shape == (1, 2, 2, 2)
+
+
+def test_a_law_that_runs_away_stays_finite_and_can_still_be_learned_from():
+    """The square of a displacement adds to the next one: without a bound 36 steps of this law overflow."""
+    window = springs(clips=2, frames=40)
+    net = dispnet(SMALL.model_copy(update={"symmetric": False}))
+    torch.nn.init.constant_(net.change[-1].bias, 30.0)
+    loss, _ = net.loss(window, torch_generator(0))
+    loss.backward()
+    assert torch.isfinite(loss)
+    assert all(torch.isfinite(each.grad).all() for each in net.parameters() if each.grad is not None)

@@ -88,7 +88,7 @@ def _data_set(sources: Sources, world: World, name: str, K: int, annotated: bool
         score[10:14] = 0.2 if clip == names[0] else 0.8
         times = clip_set.times_s(clip)
         if annotated:
-            tables["truth"].append(tracks.rows(clip, times, xy, np.ones(xy.shape[:2]), "exact"))
+            tables["truth"].append(tracks.rows(clip, times, xy, np.ones(xy.shape[:2]), "reference"))
         tables["track"].append(tracks.rows(clip, times, xy + np.array([world.off_px, 0]), score))
     tracks.save(sources.truth / f"{name}.parquet", pd.concat(tables["truth"]), "made up", clip_set)
     tracks.save(sources.tracks / f"{name}.parquet", pd.concat(tables["track"]), "made up", clip_set)

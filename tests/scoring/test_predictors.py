@@ -34,7 +34,7 @@ def film(tmp_path) -> ClipSet:
 
 def truth_table(objects: int = 1, count: int = 4) -> pd.DataFrame:
     times, score = np.arange(LENGTH) / 80, np.ones((LENGTH, objects))
-    every = [tracks.rows(f"c{i}", times, truth_of(i, objects), score, "exact") for i in range(count)]
+    every = [tracks.rows(f"c{i}", times, truth_of(i, objects), score, "reference") for i in range(count)]
     return pd.concat([tracks.empty(), *every])
 
 
@@ -129,7 +129,7 @@ def test_calibration_fits_ten_true_positions():
     """x = 2 t + 0.1 t^2 in clip 0 alone: the line through 0..9 misses it, the parabola does not."""
     t = np.arange(LENGTH)
     xy = np.stack([2 * t + 0.1 * t**2, 0 * t], axis=1)[:, None]
-    table = tracks.rows("c0", t / 80, xy, np.ones((LENGTH, 1)), "exact")
+    table = tracks.rows("c0", t / 80, xy, np.ones((LENGTH, 1)), "reference")
     figures = calibration(table, horizon=6)
     line = np.polyfit(t[:10], xy[:10, 0, 0], 1)
     assert figures["linear_T_px"] == pytest.approx(abs(np.polyval(line, 6) - xy[6, 0, 0]), abs=1e-4)

@@ -54,7 +54,7 @@ def known(*names: str, first: int = 0) -> pd.DataFrame:
     """Truth of the named clips, visible from frame `first`; a second object never shows."""
     xy = np.full((T, 2, 2), np.nan)
     xy[first:, 0] = PATH[first:]
-    return pd.concat([tracks.rows(name, np.arange(T) / 80, xy, np.ones((T, 2)), "exact") for name in names])
+    return pd.concat([tracks.rows(name, np.arange(T) / 80, xy, np.ones((T, 2)), "reference") for name in names])
 
 
 def test_each_starts_where_the_object_first_shows_and_only_test_clips_run(clips: ClipSet) -> None:
