@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
+from physpipe.baselines.template import TemplateParams
+from physpipe.baselines.zoo import BaselineParams, baseline_tracks
 from physpipe.core.ball import BallParams
 from physpipe.core.command import run
 from physpipe.core.params import read
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.trackers.baselines import BaselineParams, baseline_tracks
-from physpipe.trackers.template import TemplateParams
 
 
 def main(name: str, clips: Path, annotated: Path, truth: Path, out: Path) -> None:

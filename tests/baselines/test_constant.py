@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from physpipe.baselines.constant import Centre, Persistence
 from physpipe.core.errors import InputError
-from physpipe.trackers.constant import Centre, Persistence
 
 FRAMES = np.zeros((4, 24, 40, 3), np.uint8)
 

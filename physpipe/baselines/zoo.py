@@ -9,14 +9,14 @@ import pandas as pd
 from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
+from physpipe.baselines.constant import Centre, Persistence
+from physpipe.baselines.template import TemplateParams, TemplateTracker
 from physpipe.core.parallel import in_parallel
 from physpipe.core.params import Section
 from physpipe.io import tracks
 from physpipe.io.annotations import Annotations, Box
 from physpipe.io.clips import ClipSet
 from physpipe.trackers.base import Tracker
-from physpipe.trackers.constant import Centre, Persistence
-from physpipe.trackers.template import TemplateParams, TemplateTracker
 
 
 class Settings(NamedTuple):

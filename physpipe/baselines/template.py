@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from physpipe.baselines.correlation import peaks, zncc
 from physpipe.core.colour import srgb_to_lab
 from physpipe.core.params import Section
 from physpipe.io.annotations import Box
 from physpipe.trackers.base import Trajectory
-from physpipe.trackers.correlation import peaks, zncc
 
 
 class TemplateParams(Section):

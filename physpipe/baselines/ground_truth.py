@@ -7,11 +7,11 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
+from physpipe.baselines.template import TemplateParams, TemplateTracker
 from physpipe.core.parallel import in_parallel
 from physpipe.io import tracks
 from physpipe.io.annotations import Annotations, Box
 from physpipe.io.clips import ClipSet
-from physpipe.trackers.template import TemplateParams, TemplateTracker
 
 
 def ground_truth(clips: ClipSet, given: Annotations, params: TemplateParams) -> pd.DataFrame:

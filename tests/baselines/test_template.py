@@ -5,8 +5,8 @@ from itertools import pairwise, product
 import numpy as np
 import pytest
 
+from physpipe.baselines.template import Candidates, TemplateParams, TemplateTracker, best_path, candidates
 from physpipe.io.annotations import Box
-from physpipe.trackers.template import Candidates, TemplateParams, TemplateTracker, best_path, candidates
 
 H, W, T = 56, 72, 30
 PARAMS = TemplateParams(candidates=6, flat_lab=2, smoothness_per_px2=0.002, lost_score=0.4, lost_switch=1)

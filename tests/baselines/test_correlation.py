@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from physpipe.trackers.correlation import peaks, zncc
+from physpipe.baselines.correlation import peaks, zncc
 
 H, W = 30, 44
 

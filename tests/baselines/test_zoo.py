@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from physpipe.baselines.template import TemplateParams
+from physpipe.baselines.zoo import BASELINES, BaselineParams, baseline_tracks
 from physpipe.core.geometry import Geometry
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import Clip, ClipSet, save
-from physpipe.trackers.baselines import BASELINES, BaselineParams, baseline_tracks
-from physpipe.trackers.template import TemplateParams
 
 H, W, T, RADIUS_PX = 40, 64, 10, 5.0
 TEMPLATE = TemplateParams(candidates=4, flat_lab=2, smoothness_per_px2=0.001, lost_score=0.4, lost_switch=1)

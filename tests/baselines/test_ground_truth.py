@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from physpipe.baselines.ground_truth import ground_truth
+from physpipe.baselines.template import TemplateParams
 from physpipe.core.geometry import Geometry
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import Clip, ClipSet, save
-from physpipe.trackers.ground_truth import ground_truth
-from physpipe.trackers.template import TemplateParams
 
 H, W, T = 48, 64, 12
 GEOMETRY = Geometry(30, 10, 3 * W, 3 * H, W, H)
