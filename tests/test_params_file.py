@@ -15,7 +15,8 @@ from physpipe.learning.tracking import ObjectsParams, TrackerParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.scenes.worlds import WorldParams
-from physpipe.tracknet.model import Moments, TrackNet
+from physpipe.tracknet.model import TrackNet
+from physpipe.tracknet.moments import Moments
 
 PATH = Path(__file__).parents[1] / "params.yaml"
 PARAMS = yaml.safe_load(PATH.read_text())

@@ -13,7 +13,7 @@ from physpipe.core.errors import InputError
 from physpipe.core.params import Section
 from physpipe.io.clips import ClipSet
 from physpipe.tracknet.discriminator import MOMENTS
-from physpipe.tracknet.model import Moments
+from physpipe.tracknet.moments import Moments
 
 
 class MomentParams(Section):

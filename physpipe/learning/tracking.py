@@ -19,7 +19,8 @@ from physpipe.learning.training import FitParams, fit
 from physpipe.trackers.detectors import together
 from physpipe.trackers.learned import ReadoutParams, cells
 from physpipe.trackers.sequential import MaskParams, hidden_by
-from physpipe.tracknet.model import Moments, TrackNet, TrackNetParams
+from physpipe.tracknet.model import TrackNet, TrackNetParams
+from physpipe.tracknet.moments import Moments
 from physpipe.tracknet.signals import LockParams, SignalParams, Signals, read_signals
 
 

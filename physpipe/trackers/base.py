@@ -17,6 +17,8 @@ class Trajectory:
     """(T, 2) clip pixels, NaN where the object is lost."""
     score: NDArray[np.float32]
     """(T,) confidence in [0, 1]."""
+    ambiguous: NDArray[np.bool_] | None = None
+    """(T,) frames in which it may be another object of the same kind; None where a tracker does not say."""
 
 
 class Tracker(Protocol):

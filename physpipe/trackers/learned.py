@@ -13,7 +13,7 @@ from physpipe.core.params import Section
 from physpipe.trackers.base import Trajectory
 from physpipe.tracknet.detector import Detector
 from physpipe.tracknet.heatmap import cell_centres, distribution, expected_position
-from physpipe.tracknet.model import masked
+from physpipe.tracknet.moments import masked
 
 
 class ReadoutParams(Section):
