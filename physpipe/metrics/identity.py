@@ -69,7 +69,7 @@ def identity_figures(clips: Sequence[Tracked], diameter_px: float) -> dict[str, 
     `flagged` is the share of frames so left out: a tracker that doubts everything is never wrong. NaN without a clip,
     `idf1_unflagged` also when all is flagged.
     """
-    judged = [clip.frames(np.isfinite(clip.truth).all(axis=(1, 2))) for clip in clips]
+    judged = [clip.frames(_seen(clip.truth).all(axis=1)) for clip in clips]
     frames = sum(len(clip.truth) for clip in judged)
     if not frames:
         return dict.fromkeys(["hota", "idf1", "id_switches", "idf1_unflagged", "flagged"], np.nan)
@@ -94,7 +94,7 @@ def similarity(found: Floats, truth: Floats, diameter_px: float) -> Floats:
 def count(clip: Tracked, diameter_px: float) -> Counts:
     """The counts of one clip in which every true object is visible throughout."""
     alike = similarity(clip.found, clip.truth, diameter_px)
-    seen = np.isfinite(clip.found).all(axis=2)
+    seen = _seen(clip.found)
     hits, association = _associations(alike, seen)
     together = (alike >= TOUCHING).sum(axis=0)
     objects, tracks = linear_sum_assignment(together, maximize=True)
@@ -120,6 +120,10 @@ def unflagged_stretches(clip: Tracked) -> list[Tracked]:
     sure = ~clip.flagged.any(axis=1)
     edges = np.flatnonzero(np.diff(sure.astype(np.int8), prepend=0, append=0))
     return [clip.frames(slice(start, stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def _seen(xy: Floats) -> NDArray[np.bool_]:
+    return np.logical_and(*np.moveaxis(np.isfinite(xy), -1, 0))
 
 
 def _total(every: Sequence[Counts]) -> Counts:
