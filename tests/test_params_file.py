@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 import torch
 import yaml
+from dvc.utils.hydra import apply_overrides
 
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
@@ -65,3 +66,13 @@ def test_the_file_is_in_block_style_so_that_an_override_changes_one_line():
     lines = PATH.read_text().splitlines()
     assert [line for line in lines if len(line) > 80] == []
     assert [line for line in lines if line.split("#")[0].rstrip().endswith(("}", "]"))] == []
+
+
+@pytest.mark.parametrize("emptied", ["simulated", "learned", "supervised"])
+def test_a_list_of_what_runs_can_be_emptied_by_an_override(emptied, tmp_path):
+    copy = tmp_path / "params.yaml"
+    copy.write_text(PATH.read_text())
+    apply_overrides(copy, [f"run.{emptied}=[]", "run.datasets=[bowls]"])
+    expected = {**PARAMS, "run": {**PARAMS["run"], emptied: [], "datasets": ["bowls"]}}
+    assert yaml.safe_load(copy.read_text()) == expected
+    assert copy.read_text().count("#") == PATH.read_text().count("#")
