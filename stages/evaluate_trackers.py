@@ -10,13 +10,17 @@ from physpipe.io.clips import ClipSet
 from physpipe.scoring.trackers import EvaluateTrackersParams, score_trackers
 
 
-def main(name: str, clips: Path, truth: Path, found: Path, verdict: Path, baselines: Path, out: Path) -> None:
+def main(
+    name: str, clips: Path, truth: Path, found: Path, unrefined: Path, verdict: Path, baselines: Path, out: Path
+) -> None:
     """Writes figures per tracker to `out`, and every frame's error to `tracker_errors.csv` beside it."""
     params = read("evaluate_trackers", EvaluateTrackersParams)
     ball = read(f"datasets.{name}.evaluate", BallParams)
-    tables = {"unsupervised": tracks.load(found), **tracks.load_folder(baselines)}
-    locked = {"unsupervised": results.load_json(verdict)["locked"]}
-    figures, errors = score_trackers(ClipSet(clips), tracks.load(truth), tables, locked, params, ball)
+    ours = {"unsupervised": tracks.load(found), "unsupervised_unrefined": tracks.load(unrefined)}
+    tables, locked = {**ours, **tracks.load_folder(baselines)}, results.load_json(verdict)["locked"]
+    figures, errors = score_trackers(
+        ClipSet(clips), tracks.load(truth), tables, dict.fromkeys(ours, locked), params, ball
+    )
     results.save_json(out, figures)
     results.save_csv(out.parent / "tracker_errors.csv", errors)
 

@@ -162,9 +162,7 @@ class TrackNet(nn.Module):
         errors = self.turning_errors(frames[chosen], found.xy[chosen], hidden, turns, mirrored)
         return (self.shares(found.mass[chosen]) * errors).sum()
 
-    def turning_errors(
-        self, frames: Tensor, xy: Tensor, ignored: Tensor | None, turns: int, mirrored: bool
-    ) -> Tensor:
+    def turning_errors(self, frames: Tensor, xy: Tensor, ignored: Tensor | None, turns: int, mirrored: bool) -> Tensor:
         """(B, K) squared px between `xy` (B, K, 2) in the frames and what is found there in the turned frames."""
         H, W = frames.shape[-2:]
         hidden = None if ignored is None else turned(ignored[:, None], turns, mirrored)

@@ -4,6 +4,7 @@ from itertools import permutations
 from typing import NamedTuple
 
 import torch
+import torch.nn.functional as F
 from pydantic import Field
 from torch import Tensor
 
@@ -43,8 +44,9 @@ def whole(heat: Tensor, stride: int) -> Places:
 
 @torch.no_grad()
 def peaks(heat: Tensor, stride: int, params: PeakParams) -> Tensor:
-    """(B, slots, 2) pixels of the highest cells of (B, h, w) that lie apart, the highest first."""
-    grid, left, found = _grid(heat, stride), heat.detach().clone(), []
+    """(B, slots, 2) pixels of the highest local maxima of (B, h, w) that lie apart, the highest first."""
+    highest_near = F.max_pool2d(heat[:, None], 3, stride=1, padding=1)[:, 0]
+    grid, left, found = _grid(heat, stride), torch.where(heat == highest_near, heat, 0), []
     for _ in range(params.slots):
         highest = grid.view(-1, 2)[left.flatten(1).argmax(1)]
         found.append(highest)
@@ -58,7 +60,8 @@ def around(heat: Tensor, stride: int, centres: Tensor, window_px: float) -> Plac
     to."""
     grid = _grid(heat, stride)
     squared = (grid - centres[:, :, None, None]).square().sum(-1)  # (B, K, h, w)
-    own = (squared <= window_px**2) & (squared <= squared.min(1, keepdim=True).values)
+    nearest = squared.argmin(1, keepdim=True) == torch.arange(centres.shape[1], device=heat.device)[:, None, None]
+    own = (squared <= window_px**2) & nearest
     part = heat[:, None] * own
     mass = part.flatten(2).sum(2)
     share = part / mass.clamp_min(1e-12)[..., None, None]
