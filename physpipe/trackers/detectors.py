@@ -49,5 +49,5 @@ def together(nets: Sequence[TrackNet], params: TrackingParams) -> SequentialTrac
     detectors = [LearnedTracker(each.detector, params.readout) for each in nets]
     several = nets[0].params.peaks
     if several is not None:
-        return JointTracker(detectors[0], several, params.link)
+        return JointTracker(detectors[0], several, params.link, params.refine)
     return SequentialTracker(detectors, params.mask)

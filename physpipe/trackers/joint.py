@@ -3,31 +3,45 @@
 The paper names this as its main limitation: objects had to differ in colour and were learned one after the other.
 """
 
+from functools import partial
+
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
 from physpipe.trackers.base import Trajectory
 from physpipe.trackers.learned import LearnedTracker
-from physpipe.trackers.linking import LinkParams, link
+from physpipe.trackers.linking import LinkParams, Track, link
+from physpipe.trackers.refinement import RefineParams, Searcher
 from physpipe.tracknet.places import PeakParams, around, peaks
+
+LOOK_FRAMES = 20
+"""Latest detections of a track whose mean look it is sought by."""
 
 
 class JointTracker:
     """One detector with several peaks; finds all that it was taught to, alike or not."""
 
-    def __init__(self, detector: LearnedTracker, peaks_params: PeakParams, links: LinkParams):
-        self.detector, self.peaks, self.links = detector, peaks_params, links
+    def __init__(
+        self, detector: LearnedTracker, several: PeakParams, links: LinkParams, refinement: RefineParams | None
+    ):
+        self.detector, self.peaks, self.links, self.refinement = detector, several, links, refinement
 
     def track_all(self, frames: NDArray[np.uint8]) -> list[Trajectory]:
         """Trajectories in (T, H, W, 3) frames, the surest first; a score is the share of the heat map."""
         places, masses = self.detect(frames)
         held = masses >= self.peaks.least_mass
-        return link(
-            [xy[each] for xy, each in zip(places, held, strict=True)],
-            [mass[each] for mass, each in zip(masses, held, strict=True)],
-            self.links,
-        )
+        xy = [each[kept] for each, kept in zip(places, held, strict=True)]
+        mass = [each[kept] for each, kept in zip(masses, held, strict=True)]
+        return link(xy, mass, self.links, partial(self._seek, frames))
+
+    def _seek(self, frames: NDArray[np.uint8], track: Track, frame: int) -> tuple[NDArray[np.floating], float] | None:
+        """Where a track that no detection claims is by its look; None without refinement, which knows looks."""
+        if self.refinement is None:
+            return None
+        known = np.isin(track.frames, track.detected[-LOOK_FRAMES:])
+        seen, xy = np.array(track.frames)[known], np.stack(track.xy)[known]
+        return Searcher(frames[seen], xy, self.refinement).near(frames[frame], track.expected(frame))
 
     def detect(self, frames: NDArray[np.uint8]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """(T, slots, 2) pixels and (T, slots) share of the heat map of every peak, the highest peak first."""

@@ -1,7 +1,8 @@
 """Detections of every frame to tracks: who is who by motion, births and deaths, doubts owned up to (ours)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,8 @@ from physpipe.core.params import Section
 from physpipe.trackers.base import Trajectory
 
 Floats = NDArray[np.floating]
+SPAN = 3
+"""Frames over which a track's speed is taken."""
 
 
 class LinkParams(Section):
@@ -20,36 +23,43 @@ class LinkParams(Section):
     gate_px: float = Field(gt=0)
     """Largest distance of a detection from where its track was going."""
     memory_frames: int = Field(ge=0)
-    """Frames that a track outlives unseen; when it is seen again they are filled by a straight line."""
+    """Frames in a row that a track may go without a detection."""
     least_share: float = Field(ge=0, le=1)
-    """Share of a clip's frames in which an object must be seen; what shows more briefly is dropped."""
+    """Share of a clip's frames in which an object must be detected; what shows more briefly is dropped."""
     doubt_px: float = Field(ge=0)
     """Two tracks that would cost less than this more when exchanged are ambiguous there."""
 
 
 @dataclass
-class _Track:
+class Track:
     """One object while the frames go by."""
 
     frames: list[int]
     xy: list[Floats]
+    """(2,) pixels at each of `frames`."""
     score: list[float]
+    detected: list[int]
+    """Frames of a detection; in the others the track was sought by its look."""
     doubts: set[int] = field(default_factory=set)
 
     def expected(self, frame: int) -> Floats:
         """(2,) where it is at `frame` if it goes on as it went."""
-        if len(self.xy) < 2:
-            return self.xy[-1]
-        velocity = (self.xy[-1] - self.xy[-2]) / (self.frames[-1] - self.frames[-2])
-        return self.xy[-1] + velocity * (frame - self.frames[-1])
+        first = max(-SPAN, -len(self.xy))
+        ago = self.frames[-1] - self.frames[first]
+        speed = (self.xy[-1] - self.xy[first]) / ago if ago else np.zeros(2)
+        return self.xy[-1] + speed * (frame - self.frames[-1])
 
-    def add(self, frame: int, xy: Floats, score: float) -> None:
+    def add(self, frame: int, xy: Floats, score: float, detected: bool = True) -> None:
+        """Goes on to `xy` (2,)."""
         self.frames.append(frame)
         self.xy.append(xy)
         self.score.append(score)
+        if detected:
+            self.detected.append(frame)
 
     def trajectory(self, length: int) -> Trajectory:
-        """Over all frames of the clip: NaN before birth and after death, straight lines over what was unseen."""
+        """Over all frames of the clip, straight lines over gaps: NaN before the first detection and after the last
+        place."""
         within = np.arange(self.frames[0], self.frames[-1] + 1)
         xy, score = np.full((length, 2), np.nan, np.float32), np.zeros(length, np.float32)
         xy[within] = np.stack([np.interp(within, self.frames, axis) for axis in np.transpose(self.xy)], axis=1)
@@ -57,49 +67,61 @@ class _Track:
         return Trajectory(xy, score, np.isin(np.arange(length), sorted(self.doubts)))
 
 
-def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams) -> list[Trajectory]:
+Seek = Callable[[Track, int], "tuple[Floats, float] | None"]
+"""Looks for a track that no detection claims: its (2,) place and score at a frame, or None."""
+
+
+def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams, seek: Seek) -> list[Trajectory]:
     """Tracks of a clip from the (n_t, 2) places and (n_t,) scores found in each of its frames, the surest first."""
-    living: list[_Track] = []
-    ended: list[_Track] = []
+    living: list[Track] = []
+    ended: list[Track] = []
     for frame, (xy, score) in enumerate(zip(places, scores, strict=True)):
-        ended += [track for track in living if frame - track.frames[-1] > params.memory_frames + 1]
-        living = [track for track in living if frame - track.frames[-1] <= params.memory_frames + 1]
+        ended += [track for track in living if frame - track.detected[-1] > params.memory_frames + 1]
+        living = [track for track in living if frame - track.detected[-1] <= params.memory_frames + 1]
         pairs = _assigned(living, xy, frame, params)
-        for track, number in pairs:
-            track.add(frame, xy[number], float(score[number]))
-        taken = {number for _, number in pairs}
-        living += [_Track([frame], [xy[n]], [float(score[n])]) for n in range(len(xy)) if n not in taken]
-    kept = [each for each in ended + living if len(each.frames) >= params.least_share * len(places)]
+        born = [Track([frame], [xy[n]], [float(score[n])], [frame]) for n in range(len(xy)) if n not in pairs.values()]
+        for row in _alone(living, pairs) + _merged(living, pairs, xy, frame, params):
+            found = seek(living[row], frame)
+            if found is not None:
+                living[row].add(frame, *found, detected=False)
+                pairs.pop(row, None)
+        for row, number in pairs.items():
+            living[row].add(frame, xy[number], float(score[number]))
+        living += born
+    kept = [each for each in ended + living if len(each.detected) >= params.least_share * len(places)]
     kept.sort(key=lambda track: (-sum(track.score), track.frames[0]))
     return [track.trajectory(len(places)) for track in kept]
 
 
-def _assigned(living: list[_Track], xy: Floats, frame: int, params: LinkParams) -> list[tuple[_Track, int]]:
-    """Tracks and the numbers of their detections; notes on the tracks where an exchange would cost little more."""
+def _assigned(living: list[Track], xy: Floats, frame: int, params: LinkParams) -> dict[int, int]:
+    """Track to detection, by number; notes on the tracks where an exchange would cost little more."""
     if not living or not len(xy):
-        return []
-    expected = np.stack([track.expected(frame) for track in living])
-    cost = np.linalg.norm(expected[:, None] - xy, axis=-1)
+        return {}
+    cost = np.linalg.norm(np.stack([track.expected(frame) for track in living])[:, None] - xy, axis=-1)
     # Far beyond the gate all pairs are alike, so that one of them cannot drive a good pair apart.
-    rows, columns = linear_sum_assignment(np.minimum(cost, 4 * params.gate_px))
-    pairs = [(row, column) for row, column in zip(rows, columns, strict=True) if cost[row, column] <= params.gate_px]
-    for row, column in pairs:
-        _doubt(living[row], [living[other] for other in range(len(living)) if other != row], xy[column], frame, params)
-    for at, (row, column) in enumerate(pairs):
-        for other_row, other_column in pairs[:at]:
-            exchanged = cost[row, other_column] + cost[other_row, column]
-            if exchanged - cost[row, column] - cost[other_row, other_column] < params.doubt_px:
+    assigned = zip(*linear_sum_assignment(np.minimum(cost, 4 * params.gate_px)), strict=True)
+    pairs = {int(row): int(number) for row, number in assigned if cost[row, number] <= params.gate_px}
+    for row, other in combinations(pairs, 2):
+        exchanged = cost[row, pairs[other]] + cost[other, pairs[row]]
+        if exchanged - cost[row, pairs[row]] - cost[other, pairs[other]] < params.doubt_px:
+            living[row].doubts.add(frame)
+            living[other].doubts.add(frame)
+    return pairs
+
+
+def _alone(living: list[Track], pairs: dict[int, int]) -> list[int]:
+    """Tracks without a detection."""
+    return [row for row in range(len(living)) if row not in pairs]
+
+
+def _merged(living: list[Track], pairs: dict[int, int], xy: Floats, frame: int, params: LinkParams) -> list[int]:
+    """Tracks whose detection may be that of a neighbour, too: two objects that touch look like one. Both are
+    ambiguous."""
+    merged = []
+    for row, number in pairs.items():
+        for other in _alone(living, pairs):
+            if np.linalg.norm(living[other].expected(frame) - xy[number]) <= params.gate_px:
+                merged.append(row)
                 living[row].doubts.add(frame)
-                living[other_row].doubts.add(frame)
-    return [(living[row], int(column)) for row, column in pairs]
-
-
-def _doubt(track: _Track, others: list[_Track], xy: Floats, frame: int, params: LinkParams) -> None:
-    """A track seen again near where another one was, too, may be that other one."""
-    unseen = range(track.frames[-1] + 1, frame + 1)
-    if len(unseen) < 2:
-        return
-    for other in others:
-        if np.linalg.norm(other.expected(frame) - xy) <= params.gate_px:
-            track.doubts.update(unseen)
-            other.doubts.update(unseen)
+                living[other].doubts.add(frame)
+    return sorted(set(merged))

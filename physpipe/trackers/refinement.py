@@ -7,6 +7,8 @@ what is compared is the mix of colours that tells the object from its surroundin
 discriminant), in which shading counts as noise.
 """
 
+from typing import NamedTuple
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -37,40 +39,75 @@ def refined(frames: NDArray[np.uint8], xy: NDArray[np.floating], params: RefineP
     """(T, 2) middles of the object on which (T, 2) positions in (T, H, W, 3) frames lie; NaN stays NaN."""
     seen = np.flatnonzero(np.isfinite(xy).all(axis=1))
     middles = xy.astype(np.float32)
-    if not len(seen):
-        return middles
-    margin = params.reach_px + params.search_px
-    corners = np.rint(xy[seen]).astype(int)
-    patches = srgb_to_lab(_cut(frames, seen, corners, margin))
-    start = (xy[seen] - corners).astype(np.float32)  # from each patch's middle
-    offsets = start
-    for _ in range(params.rounds):
-        offsets = _fitted(patches, offsets, start, params)
-    middles[seen] = corners + offsets
+    if len(seen):
+        middles[seen] = _centred(frames[seen], middles[seen], params)[0]
     return middles
 
 
-def _cut(frames: NDArray[np.uint8], seen: NDArray[np.intp], middle: NDArray[np.intp], half: int) -> NDArray[np.uint8]:
-    """(N, 2 half + 1, 2 half + 1, 3) patches around whole pixels, the frame's edge repeated outwards."""
+class Look(NamedTuple):
+    """How an object looks from any side."""
+
+    mix: Floats
+    """(3,) weights of L, a and b."""
+    template: Floats
+    """(P, P) that mix around the middle."""
+
+    def fit(self, patch: Floats, search_px: int) -> tuple[Floats, float]:
+        """(2,) offset from the middle of a LAB `patch` at which it fits best, and how well; -1 at the rim."""
+        half = len(self.template) // 2
+        disc = (_distances(half) <= half + 0.5).astype(np.float32)
+        return _fit(patch @ self.mix, self.template, disc, search_px)
+
+
+class Searcher:
+    """Finds an object again by the look that it had."""
+
+    def __init__(self, frames: NDArray[np.uint8], xy: NDArray[np.floating], params: RefineParams):
+        """From (N, H, W, 3) frames in which the object was at (N, 2)."""
+        self.params = params
+        self.look = _centred(frames, xy.astype(np.float32), params)[1]
+
+    def near(self, frame: NDArray[np.uint8], xy: NDArray[np.floating]) -> tuple[Floats, float] | None:
+        """(2,) place near (2,) in (H, W, 3) where it fits best, and how well; None where nothing fits."""
+        corner, search = np.rint(xy).astype(int), self.params.search_px
+        half = len(self.look.template) // 2 + search
+        offset, fit = self.look.fit(srgb_to_lab(_cut(frame[None], corner[None], half))[0], search)
+        return (corner + offset, fit) if fit >= self.params.least_fit else None
+
+
+def _centred(frames: NDArray[np.uint8], xy: Floats, params: RefineParams) -> tuple[Floats, Look]:
+    """(N, 2) middles in (N, H, W, 3) frames, and the look that they were found by."""
+    corners = np.rint(xy).astype(int)
+    patches = srgb_to_lab(_cut(frames, corners, params.reach_px + params.search_px))
+    start = (xy - corners).astype(np.float32)  # from each patch's middle
+    offsets, look = start, None
+    for _ in range(params.rounds):
+        look = _mean_look(patches, offsets, params)
+        fits = [look.fit(patch, params.search_px) for patch in patches]
+        chosen = [new if fit >= params.least_fit else old for (new, fit), old in zip(fits, start, strict=True)]
+        offsets = np.stack(chosen)
+    assert look is not None  # there is at least one round
+    return corners + offsets, look
+
+
+def _cut(frames: NDArray[np.uint8], middle: NDArray[np.intp], half: int) -> NDArray[np.uint8]:
+    """(N, 2 half + 1, 2 half + 1, 3) patches around whole pixels (N, 2), the frame's edge repeated outwards."""
     around = np.arange(-half, half + 1)
     rows = np.clip(middle[:, 1:] + around, 0, frames.shape[1] - 1)
     columns = np.clip(middle[:, :1] + around, 0, frames.shape[2] - 1)
-    return frames[seen[:, None, None], rows[:, :, None], columns[:, None, :]]
+    return frames[np.arange(len(frames))[:, None, None], rows[:, :, None], columns[:, None, :]]
 
 
-def _fitted(patches: Floats, offsets: Floats, start: Floats, params: RefineParams) -> Floats:
-    """(N, 2) new offsets from the middles of LAB `patches` (N, P, P, 3)."""
+def _mean_look(patches: Floats, offsets: Floats, params: RefineParams) -> Look:
+    """Of the object at (N, 2) offsets from the middles of LAB `patches` (N, P, P, 3)."""
     looks = np.stack([_shifted(patch, offset, params.reach_px) for patch, offset in zip(patches, offsets, strict=True)])
     distance = _distances(params.reach_px)
     profile = _profile(np.median(looks, axis=0), distance)
     radius = _radius(profile)
     mix = _telling_colours(looks, distance, radius)
     half = int(np.clip(round(params.extent * radius) + 1, 3, params.reach_px))
-    near = _distances(half)
-    template = np.interp(near, np.arange(len(profile)), profile @ mix).astype(np.float32)
-    disc = (near <= half + 0.5).astype(np.float32)
-    fits = [_fit(patch @ mix, template, disc, params.search_px) for patch in patches]
-    return np.stack([xy if fit >= params.least_fit else first for (xy, fit), first in zip(fits, start, strict=True)])
+    template = np.interp(_distances(half), np.arange(len(profile)), profile @ mix).astype(np.float32)
+    return Look(mix, template)
 
 
 def _shifted(patch: Floats, offset: Floats, half: int) -> Floats:
