@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
 CODE = ["physpipe", "stages", "data", "dvc.yaml", "params.yaml"]
@@ -68,10 +69,15 @@ class Task(NamedTuple):
 
 def command(*words: str) -> str:
     """What a command prints; raises CommandError with what it said when it fails."""
-    done = subprocess.run(words, capture_output=True, text=True)
-    if done.returncode:
-        raise CommandError(f"`{' '.join(words[:4])}` failed: {(done.stderr or done.stdout).strip()[-2000:]}")
-    return done.stdout
+    # Files, not pipes: DVC's workers inherit them, and a pipe ends only with its last holder.
+    with TemporaryFile("w+") as printed, TemporaryFile("w+") as complained:
+        code = subprocess.run(words, stdout=printed, stderr=complained).returncode
+        printed.seek(0)
+        complained.seek(0)
+        told = printed.read()
+        if code:
+            raise CommandError(f"`{' '.join(words[:4])}` failed: {(complained.read() or told).strip()[-2000:]}")
+    return told
 
 
 def tracker_only(dataset: str, seed: int, simulated: bool) -> tuple[str, ...]:
