@@ -96,6 +96,7 @@ def draw(path: Path, parts: Mapping[str, Any]) -> None:
     figure, axes = plt.subplots(1, 2, figsize=(10, 3.8), layout="constrained")
     _bars(axes[0], _known(losses), "Losses")
     _bars(axes[1], dict(ingredients) | _known({"full recipe": full}), "Ingredients of the recipe")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=130, metadata={"Software": None})
     plt.close(figure)
@@ -108,12 +109,13 @@ def _known(rows: Mapping[str, Row | None]) -> dict[str, Row]:
 def _bars(axes: Any, rows: Mapping[str, Row], title: str) -> None:
     names = list(rows)
     for key, label in (("p99_px", "99th percentile"), ("mean_px", "mean")):
-        bars = axes.barh(names, [row[key] for row in rows.values()], color=COLOURS[key], label=label)
-    axes.bar_label(bars, [f"{row['mean_px']:.2f}" for row in rows.values()], padding=3, fontsize=8)
+        axes.barh(names, [row[key] for row in rows.values()], color=COLOURS[key], label=label)
+    figures = [f"{row['mean_px']:.2f} / {row['p99_px']:.1f}" for row in rows.values()]
+    axes.bar_label(axes.containers[0], figures, padding=3, fontsize=8)
     axes.invert_yaxis()
-    axes.set(title=title, xlabel="error, px", xscale="symlog")
+    axes.margins(x=0.25)
+    axes.set(title=title, xlabel="error, px: mean / 99th percentile", xscale="symlog")
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, fontsize=8)
 
 
 def main() -> None:

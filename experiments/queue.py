@@ -206,8 +206,8 @@ def _reason(task: Task | None, run: Runner) -> str:
     if task is None:
         return "it vanished from DVC's queue"
     lines = [line.strip() for line in run("dvc", "queue", "logs", task.id).splitlines()]
-    told = [line for line in lines if re.match(r"(error|ERROR|\w*Error):?\b", line)]
-    return " / ".join(told[-2:]) or " / ".join([line for line in lines if line][-2:]) or task.state
+    said = [line for line in lines if re.match(r"(error|\w+Error): ", line)]  # by a stage, else by DVC or whoever
+    return (said or [line for line in lines if line] or [task.state])[-1]
 
 
 def _note_cost(name: str, started: float | None) -> None:

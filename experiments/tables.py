@@ -98,4 +98,4 @@ def _number(value: Any) -> str:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.0f}" if abs(value) >= 100 or value == int(value) else f"{value:.2f}"
+    return f"{value:.0f}" if isinstance(value, int) or abs(value) >= 100 else f"{value:.2f}"
