@@ -113,7 +113,7 @@ def _bars(axes: Any, rows: Mapping[str, Row], title: str) -> None:
     figures = [f"{row['mean_px']:.2f} / {row['p99_px']:.1f}" for row in rows.values()]
     axes.bar_label(axes.containers[0], figures, padding=3, fontsize=8)
     axes.invert_yaxis()
-    axes.margins(x=0.25)
+    axes.margins(x=0.3)
     axes.set(title=title, xlabel="error, px: mean / 99th percentile", xscale="symlog")
     axes.spines[["top", "right"]].set_visible(False)
 
@@ -136,6 +136,8 @@ def main() -> None:
         parts = collect(wanted, read_results(list(wanted.values())), chosen.set)
     except CommandError as error:
         sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("stopped; the same command goes on from here")
     Path("metrics/ablation.json").write_text(json.dumps(parts, indent=1) + "\n")
     draw(Path("docs/results/ablation.png"), parts)
     for experiment, reason in failed.items():

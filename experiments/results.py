@@ -99,6 +99,8 @@ def main() -> None:
         results = read_results(list(wanted.values()))
     except CommandError as error:
         sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("stopped; the same command goes on from here")
     speed = json.loads(SPEED.read_text()) if SPEED.is_file() else {"rates": {}, "machine": None}
     table = collect(wanted, results, speed["rates"])
     told = {key[0]: reason for key, each in wanted.items() for other, reason in failed.items() if each == other}
