@@ -16,7 +16,8 @@ from typing import Any
 import matplotlib.pyplot as plt
 import yaml
 
-from experiments.queue import CommandError, Experiment, Result, read_results, run_missing, tracker_only
+from experiments.queue import run_missing
+from experiments.records import CommandError, Experiment, Result, read_results, tracker_only
 from experiments.spread import Row, over_seeds
 
 RECIPE = "tracker.recipes.lock"

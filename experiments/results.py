@@ -14,7 +14,8 @@ from typing import Any
 
 import yaml
 
-from experiments.queue import CommandError, Experiment, Result, read_results, run_missing, tracker_only
+from experiments.queue import run_missing
+from experiments.records import CommandError, Experiment, Result, read_results, tracker_only
 from experiments.spread import Row, over_seeds
 from experiments.tables import page
 

@@ -6,7 +6,7 @@ import pytest
 from dvc.utils.hydra import apply_overrides
 
 from experiments.ablation import collect, draw, experiments, variants
-from experiments.queue import Result
+from experiments.records import Result
 from physpipe.core.params import read
 from physpipe.learning.tracking import TrackerParams
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import yaml
 
-from experiments.queue import Result
+from experiments.records import Result
 from experiments.results import collect, experiments, runnable
 from experiments.tables import page, verdict
 
