@@ -69,7 +69,7 @@ def identity_figures(clips: Sequence[Tracked], diameter_px: float) -> dict[str, 
     `flagged` is the share of frames so left out: a tracker that doubts everything is never wrong. NaN without a clip,
     `idf1_unflagged` also when all is flagged.
     """
-    judged = [clip.frames(_seen(clip.truth).all(axis=1)) for clip in clips]
+    judged = [clip.frames(np.logical_and.reduce(_seen(clip.truth), axis=1)) for clip in clips]
     frames = sum(len(clip.truth) for clip in judged)
     if not frames:
         return dict.fromkeys(["hota", "idf1", "id_switches", "idf1_unflagged", "flagged"], np.nan)
@@ -123,7 +123,7 @@ def unflagged_stretches(clip: Tracked) -> list[Tracked]:
 
 
 def _seen(xy: Floats) -> NDArray[np.bool_]:
-    return np.logical_and(*np.moveaxis(np.isfinite(xy), -1, 0))
+    return np.logical_and.reduce(np.isfinite(xy), axis=-1)
 
 
 def _total(every: Sequence[Counts]) -> Counts:

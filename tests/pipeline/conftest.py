@@ -14,7 +14,9 @@ ROOT = Path(__file__).parents[2]
 PARTS = [
     "physpipe",
     "stages",
+    "experiments",
     "metrics/templates",
+    "data/predictors",
     "dvc.yaml",
     "params.yaml",
     ".dvc/config",
