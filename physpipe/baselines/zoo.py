@@ -111,6 +111,7 @@ BASELINES: dict[str, Follower | Finder] = {
     "mog2_blob": _subtracted("mog2"),
     "knn_blob": _subtracted("knn"),
     "median_blob": _finds(lambda settings: partial(median_blobs, params=settings.params.background)),
+    "lab": Follower(lambda settings, boxes: TemplateTracker(settings.template, boxes)),
     "farneback_simple": _follows("farneback", FlowSimple),
     "farneback_blob": _follows("farneback", FlowBlob),
     "dis_simple": _follows("dis", FlowSimple),
@@ -118,5 +119,4 @@ BASELINES: dict[str, Follower | Finder] = {
     "flow_simple": _follows("flow", FlowSimple),
     "flow_blob": _follows("flow", FlowBlob),
     "trackpy": _finds(_spots),
-    "lab": Follower(lambda settings, boxes: TemplateTracker(settings.template, boxes)),
 }
