@@ -46,8 +46,8 @@ def median_blobs(frames: NDArray[np.uint8], ignore: NDArray[np.bool_] | None, pa
         difference = frame - background
         difference -= np.median(difference, axis=(0, 1))
         strength = cv2.GaussianBlur(np.abs(difference).max(axis=2), (0, 0), params.median.blur_px)
-        mask = (strength > params.median.threshold_grey).astype(np.uint8)
-        found.append(blobs(kept(mask, None if ignore is None else ignore[t]), 0, params.least_px2))
+        shown = kept(strength, None if ignore is None else ignore[t])
+        found.append(blobs(shown, params.median.threshold_grey, params.least_px2))
     return found
 
 

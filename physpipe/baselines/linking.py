@@ -49,17 +49,15 @@ def _heaviest(found: Found, objects: int, least_share: float) -> Found:
 def link(found: list[Found], objects: int, far_px: float) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(T, K, 2) positions, NaN where lost, and (T, K) shares: each frame's finds, at most K, to K objects.
 
-    By least total distance from where each is expected: where it was last seen, moved on as it then moved. One that
-    was never seen takes what the others leave: to it everything is `far_px`, more than any distance in the frame.
+    By least total distance from where each was last seen; how it moved there is no help to balls that bounce. One
+    that was never seen takes what the others leave: to it everything is `far_px`, more than any distance in the frame.
     """
     xy = np.full((len(found), objects, 2), np.nan, np.float32)
     score = np.zeros((len(found), objects), np.float32)
-    last, step = np.full((objects, 2), np.nan), np.zeros((objects, 2))
+    last = np.full((objects, 2), np.nan)
     for t, (places, share) in enumerate(found):
-        cost = np.nan_to_num(cdist(last + step, places), nan=far_px)
+        cost = np.nan_to_num(cdist(last, places), nan=far_px)
         who, what = linear_sum_assignment(cost)
         xy[t, who], score[t, who] = places[what], share[what]
-        step[:] = 0
-        step[who] = np.nan_to_num(places[what] - last[who])
         last[who] = places[what]
     return xy, score

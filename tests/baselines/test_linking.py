@@ -7,7 +7,7 @@ from physpipe.baselines.linking import FinderParams, FinderTracker, link
 
 FRAMES = np.zeros((6, 30, 50, 3), np.uint8)
 T = np.arange(6)
-LEFT, RIGHT = (np.stack([5 + 4.0 * T, 0 * T + 10], axis=1), np.stack([25 - 4.0 * T, 0 * T + 11], axis=1))
+LEFT, RIGHT = (np.stack([5 + 4.0 * T, 0 * T + 10], axis=1), np.stack([25 - 4.0 * T, 0 * T + 20], axis=1))
 
 
 def test_objects_that_pass_each_other_keep_their_number_whatever_comes_first() -> None:
