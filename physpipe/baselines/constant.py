@@ -16,21 +16,18 @@ class Persistence:
         ignore: NDArray[np.bool_] | None = None,
     ) -> Trajectory:
         """The start in every frame, with score 0: nothing was seen."""
-        return _everywhere(len(frames), required(start, "persistence"))
+        return _everywhere(len(frames), required(start, frames, "persistence"))
 
 
 class Centre:
-    """The object is in the middle of the frame: "Const." in the paper's ablation figure."""
+    """Every object is in the middle of the frame: "Const." in the paper's ablation figure."""
 
-    def track(
-        self,
-        frames: NDArray[np.uint8],
-        start: NDArray[np.floating] | None = None,
-        ignore: NDArray[np.bool_] | None = None,
-    ) -> Trajectory:
+    def track_all(
+        self, frames: NDArray[np.uint8], objects: int, ignore: NDArray[np.bool_] | None = None
+    ) -> list[Trajectory]:
         """The frame's centre in every frame, with score 0: nothing was seen."""
         T, H, W = frames.shape[:3]
-        return _everywhere(T, np.array([(W - 1) / 2, (H - 1) / 2]))
+        return [_everywhere(T, np.array([(W - 1) / 2, (H - 1) / 2]))] * objects
 
 
 def _everywhere(T: int, xy: NDArray[np.floating]) -> Trajectory:

@@ -13,6 +13,7 @@ from pydantic import Field
 
 from physpipe.baselines.correlation import peaks, zncc
 from physpipe.core.colour import srgb_to_lab
+from physpipe.core.errors import InputError
 from physpipe.core.params import Section
 from physpipe.io.annotations import Box
 from physpipe.trackers.base import Trajectory
@@ -75,7 +76,14 @@ class TemplateTracker:
 
 
 def cut(frame: NDArray[np.uint8], box: Box) -> Template:
-    """The part of `frame` (H, W, 3) inside the box, as a template of the box's centre."""
+    """The part of `frame` (H, W, 3) inside the box, as a template of the box's centre.
+
+    Raises InputError when the box is larger than the frame.
+    """
+    H, W = frame.shape[:2]
+    if box.w > W or box.h > H:
+        reason = f"a template of {box.w:g} x {box.h:g} pixels is larger than the frame of {W} x {H}"
+        raise InputError("tracker `lab`", reason, "draw a smaller box, or lower `baselines.box_radii`")
     left, top = max(round(box.x), 0), max(round(box.y), 0)
     patch = srgb_to_lab(frame[top : max(round(box.y + box.h), 1), left : max(round(box.x + box.w), 1)])
     h, w = patch.shape[:2]

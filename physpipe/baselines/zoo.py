@@ -1,55 +1,47 @@
-"""The trackers that ours is compared with, run over the clips of the test split."""
+"""The trackers that ours is compared with: names, numbers, and what each is told."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import NamedTuple
 
-import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
+from physpipe.baselines.background import BackgroundParams, Model, median_blobs, subtracted_blobs
 from physpipe.baselines.constant import Centre, Persistence
+from physpipe.baselines.dense_flow import (
+    DisParams,
+    FarnebackParams,
+    Flow,
+    FlowBlob,
+    FlowParams,
+    FlowSimple,
+    dis,
+    farneback,
+)
+from physpipe.baselines.linking import Find, FinderParams, FinderTracker
+from physpipe.baselines.lucas_kanade import LucasKanade, LucasKanadeParams
+from physpipe.baselines.spots import TrackpyParams, odd_diameter_px, spots
 from physpipe.baselines.template import TemplateParams, TemplateTracker
-from physpipe.core.parallel import in_parallel
+from physpipe.core.errors import InputError
 from physpipe.core.params import Section
-from physpipe.io import tracks
-from physpipe.io.annotations import Annotations, Box
-from physpipe.io.clips import ClipSet
-from physpipe.trackers.base import Tracker
-
-
-class Settings(NamedTuple):
-    """What the baselines may be told beside the frames and a start."""
-
-    template: TemplateParams
-    box_px: float
-    """Side of the box around an object's start where the user drew none."""
-
-
-class Baseline(NamedTuple):
-    """A tracker to compare with, and what it has to be given."""
-
-    build: Callable[[Settings, list[Box]], Tracker]
-    """From the settings and the boxes around the object."""
-    needs_start: bool
-    """Whether it must be told where the object is when it first shows, as in the paper."""
-
-
-BASELINES = {
-    "lab": Baseline(lambda settings, boxes: TemplateTracker(settings.template, boxes), needs_start=True),
-    "persistence": Baseline(lambda settings, boxes: Persistence(), needs_start=True),
-    "centre": Baseline(lambda settings, boxes: Centre(), needs_start=False),
-}
+from physpipe.io.annotations import Box
+from physpipe.trackers.base import JointTracker, Tracker
 
 
 class BaselineParams(Section):
-    """Which baselines run, and what stands in for a user's template box."""
+    """Which baselines run, and their numbers: the same for every data set."""
 
     names: list[str]
     """Members of BASELINES."""
     box_radii: float = Field(gt=0)
     """Half the side of the box around an object's start, in its radii, where the user drew none."""
+    lucas_kanade: LucasKanadeParams
+    flow: FlowParams
+    dis: DisParams
+    farneback: FarnebackParams
+    finder: FinderParams
+    background: BackgroundParams
+    trackpy: TrackpyParams
 
     @field_validator("names")
     @classmethod
@@ -60,64 +52,71 @@ class BaselineParams(Section):
         return names
 
 
-class Job(NamedTuple):
-    """One clip's work."""
+class Settings(NamedTuple):
+    """What the baselines may be told beside the frames and a start."""
 
-    clip: str
-    truth: NDArray[np.floating]
-    """(T, K, 2) pixels; K = 1 and all NaN when nobody annotated the clip."""
-    boxes: list[list[Box]]
-    """The user's boxes around each of the K objects."""
+    params: BaselineParams
+    template: TemplateParams
+    radius_px: float
+    """The objects' radius."""
+    flows: Mapping[str, Flow]
+    """Dense flows by name, as `known_flows` gives them; the trackers `flow_*` follow the one named `flow`."""
 
-
-def baseline_tracks(
-    clips: ClipSet,
-    given: Annotations,
-    truth: pd.DataFrame,
-    params: BaselineParams,
-    template: TemplateParams,
-    radius_px: float,
-) -> dict[str, pd.DataFrame]:
-    """Tracker name to its track table of the test split; `radius_px` is the objects' radius.
-
-    A tracker that needs a start has rows of annotated clips only, and without any truth no table at all.
-    """
-    settings = Settings(template, 2 * params.box_radii * radius_px)
-    known = tracks.by_clip(truth)
-    jobs = []
-    for clip in clips.names("test"):
-        xy = known.get(clip, np.full((len(clips.times_s(clip)), 1, 2), np.nan, np.float32))
-        jobs.append(Job(clip, xy, [given.boxes(clip, k) for k in range(xy.shape[1])]))
-    tables = {}
-    for name in params.names:
-        wanted = [job for job in jobs if job.clip in known or not BASELINES[name].needs_start]
-        if wanted:
-            work = partial(_track_clip, name, clips, settings)
-            tables[name] = pd.concat(in_parallel(work, wanted, name), ignore_index=True)
-    return tables
+    def flow(self, name: str) -> Flow:
+        """Raises InputError where there is none of that name."""
+        if name not in self.flows:
+            mend = f"train one, or drop {name}_simple and {name}_blob from `baselines.names`"
+            raise InputError(f"trackers `{name}_*`", "they need a flow network, and none was trained", mend)
+        return self.flows[name]
 
 
-def _track_clip(name: str, clips: ClipSet, settings: Settings, job: Job) -> pd.DataFrame:
-    frames = clips.frames(job.clip)
-    T, K = job.truth.shape[:2]
-    xy, score = np.full((T, K, 2), np.nan, np.float32), np.zeros((T, K), np.float32)
-    for k in range(K):
-        visible = np.flatnonzero(np.isfinite(job.truth[:, k]).all(axis=1))
-        if not BASELINES[name].needs_start:
-            first, start, boxes = 0, None, []
-        elif len(visible):
-            first, start = int(visible[0]), job.truth[visible[0], k]
-            boxes = _boxes(job.boxes[k], first, start, settings.box_px)
-        else:
-            continue  # an object that never shows leaves nothing to start from
-        found = BASELINES[name].build(settings, boxes).track(frames[first:], start)
-        xy[first:, k], score[first:, k] = found.xy, found.score
-    return tracks.rows(job.clip, clips.times_s(job.clip), xy, score)
+def known_flows(params: BaselineParams) -> dict[str, Flow]:
+    """The flows that need no training; picklable, as every flow must be that is put beside them."""
+    return {"dis": partial(dis, params=params.dis), "farneback": partial(farneback, params=params.farneback)}
 
 
-def _boxes(drawn: list[Box], first: int, start: NDArray[np.floating], box_px: float) -> list[Box]:
-    """The user's boxes, their frames counted from `first`, or for want of any a square one around the start."""
-    kept = [box._replace(frame=box.frame - first) for box in drawn if box.frame >= first]
-    side = 2 * round((box_px - 1) / 2) + 1
-    x, y = (float(middle) - (side - 1) / 2 for middle in start)
-    return kept or [Box(0, x, y, side, side)]
+class Follower(NamedTuple):
+    """A tracker that is told where one object is when it first shows, as in the paper."""
+
+    build: Callable[[Settings, list[Box]], Tracker]
+    """From the settings and the boxes around the object."""
+
+
+class Finder(NamedTuple):
+    """A tracker that finds all objects together, told how many there are and nothing of where."""
+
+    build: Callable[[Settings], JointTracker]
+
+
+def _follows(flow: str, kind: type[FlowSimple]) -> Follower:
+    return Follower(lambda settings, boxes: kind(settings.flow(flow), settings.params.flow, settings.radius_px))
+
+
+def _finds(find: Callable[[Settings], Find]) -> Finder:
+    return Finder(lambda settings: FinderTracker(find(settings), settings.params.finder))
+
+
+def _subtracted(model: Model) -> Finder:
+    return _finds(lambda settings: partial(subtracted_blobs, params=settings.params.background, model=model))
+
+
+def _spots(settings: Settings) -> Find:
+    return partial(spots, params=settings.params.trackpy, diameter_px=odd_diameter_px(settings.radius_px))
+
+
+BASELINES: dict[str, Follower | Finder] = {
+    "centre": Finder(lambda settings: Centre()),
+    "persistence": Follower(lambda settings, boxes: Persistence()),
+    "lucas_kanade": Follower(lambda settings, boxes: LucasKanade(settings.params.lucas_kanade, settings.radius_px)),
+    "mog2_blob": _subtracted("mog2"),
+    "knn_blob": _subtracted("knn"),
+    "median_blob": _finds(lambda settings: partial(median_blobs, params=settings.params.background)),
+    "lab": Follower(lambda settings, boxes: TemplateTracker(settings.template, boxes)),
+    "farneback_simple": _follows("farneback", FlowSimple),
+    "farneback_blob": _follows("farneback", FlowBlob),
+    "dis_simple": _follows("dis", FlowSimple),
+    "dis_blob": _follows("dis", FlowBlob),
+    "flow_simple": _follows("flow", FlowSimple),
+    "flow_blob": _follows("flow", FlowBlob),
+    "trackpy": _finds(_spots),
+}

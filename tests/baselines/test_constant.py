@@ -17,7 +17,9 @@ def test_persistence_stays_at_the_start_and_needs_one() -> None:
 
 
 def test_the_centre_is_as_far_from_the_first_pixel_as_from_the_last() -> None:
-    found = Centre().track(FRAMES)
-    np.testing.assert_array_equal(found.xy, np.tile([19.5, 11.5], (4, 1)))
-    assert (found.score == 0).all()
-    assert found.xy.dtype == np.float32
+    found = Centre().track_all(FRAMES, 2)
+    assert len(found) == 2
+    for each in found:
+        np.testing.assert_array_equal(each.xy, np.tile([19.5, 11.5], (4, 1)))
+        assert (each.score == 0).all()
+        assert each.xy.dtype == np.float32

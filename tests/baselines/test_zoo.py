@@ -1,87 +1,37 @@
-"""The baselines over the clips of a data set."""
+"""Names of the baselines and what they are built from."""
 
-from pathlib import Path
+import pickle
 
-import numpy as np
-import pandas as pd
 import pytest
+from pydantic import ValidationError
 
 from physpipe.baselines.template import TemplateParams
-from physpipe.baselines.zoo import BASELINES, BaselineParams, baseline_tracks
-from physpipe.core.geometry import Geometry
-from physpipe.io import annotations, tracks
-from physpipe.io.clips import Clip, ClipSet, save
+from physpipe.baselines.zoo import BASELINES, BaselineParams, Follower, Settings, known_flows
+from physpipe.core.errors import InputError
 
-H, W, T, RADIUS_PX = 40, 64, 10, 5.0
 TEMPLATE = TemplateParams(candidates=4, flat_lab=2, smoothness_per_px2=0.001, lost_score=0.4, lost_switch=1)
-PARAMS = BaselineParams(names=["lab", "persistence", "centre"], box_radii=1.5)
-PATH = np.stack([12 + 4.0 * np.arange(T), 12 + 1.5 * np.arange(T)], axis=1)
+NEEDS_A_NETWORK = {"flow_simple", "flow_blob"}
 
 
-@pytest.fixture(autouse=True)
-def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PHYSPIPE_WORKERS", "1")
+def test_an_unknown_baseline_is_refused(params: BaselineParams) -> None:
+    with pytest.raises(ValidationError, match="flownet"):
+        BaselineParams.model_validate(params.model_dump() | {"names": ["lab", "flownet"]})
 
 
-@pytest.fixture
-def clips(tmp_path: Path) -> ClipSet:
-    """A red disc runs along PATH; clips one and two are for testing."""
-    rows, columns = np.mgrid[:H, :W]
-    inside = np.clip(RADIUS_PX + 0.5 - np.hypot(columns - PATH[:, :1, None], rows - PATH[:, 1:, None]), 0, 1)[..., None]
-    frames = (inside * [220, 60, 40] + (1 - inside) * 110).round().astype(np.uint8)
-    times, numbers, status = np.arange(T) / 80, np.arange(T, dtype=np.int32), np.array(["ok"] * T)
-    made = [
-        Clip(name, split, "film.mp4", Geometry(0, 0, W, H, W, H), frames, times, numbers, times, status)
-        for name, split in (("one", "test"), ("other", "train"), ("two", "test"))
-    ]
-    save(tmp_path / "clips", made)
-    return ClipSet(tmp_path / "clips")
+def test_by_default_all_run_that_need_no_training(params: BaselineParams) -> None:
+    assert set(params.names) == set(BASELINES) - NEEDS_A_NETWORK
+    assert len(params.names) == len(set(params.names))
 
 
-def run(clips: ClipSet, truth: pd.DataFrame, templates: str = "") -> dict[str, pd.DataFrame]:
-    """Baseline tables, after a round trip through their folder."""
-    folder = clips.folder.parent / "annotated"
-    folder.mkdir()
-    if templates:
-        (folder / "templates.csv").write_text(templates)
-    given = annotations.load(folder, clips)
-    tables = baseline_tracks(clips, given, truth, PARAMS, TEMPLATE, RADIUS_PX)
-    tracks.save_folder(folder / "out", tables, "test", clips)
-    return tracks.load_folder(folder / "out")
+@pytest.mark.parametrize("name", sorted(NEEDS_A_NETWORK))
+def test_the_learned_flow_is_asked_for_by_name(name: str, params: BaselineParams) -> None:
+    baseline, flows = BASELINES[name], known_flows(params)
+    assert isinstance(baseline, Follower)
+    with pytest.raises(InputError, match="flow network"):
+        baseline.build(Settings(params, TEMPLATE, 5.0, flows), [])
+    baseline.build(Settings(params, TEMPLATE, 5.0, flows | {"flow": flows["dis"]}), [])
 
 
-def known(*names: str, first: int = 0) -> pd.DataFrame:
-    """Truth of the named clips, visible from frame `first`; a second object never shows."""
-    xy = np.full((T, 2, 2), np.nan)
-    xy[first:, 0] = PATH[first:]
-    return pd.concat([tracks.rows(name, np.arange(T) / 80, xy, np.ones((T, 2)), "reference") for name in names])
-
-
-def test_each_starts_where_the_object_first_shows_and_only_test_clips_run(clips: ClipSet) -> None:
-    tables = run(clips, known("one", "other", first=3))
-    assert list(tables) == ["centre", "lab", "persistence"]
-    for name, table in tables.items():
-        assert set(table["clip"]) == ({"one"} if BASELINES[name].needs_start else {"one", "two"})
-    lab, still = (tracks.positions(tables[name], "one") for name in ("lab", "persistence"))
-    assert np.abs(lab[3:, 0] - PATH[3:]).max() < 0.1  # pixels
-    np.testing.assert_array_equal(still[3:, 0], np.tile(PATH[3].astype(np.float32), (T - 3, 1)))
-    for xy in (lab, still):
-        assert np.isnan(xy[:3]).all()
-        assert np.isnan(xy[:, 1]).all()
-    assert (tracks.positions(tables["centre"], "one") == [(W - 1) / 2, (H - 1) / 2]).all()
-    assert tracks.positions(tables["centre"], "two").shape == (T, 1, 2)
-
-
-def test_the_users_box_is_preferred_to_one_around_the_start(clips: ClipSet) -> None:
-    wrong = "clip,object,frame,x,y,w,h\none,0,4,40,2,9,9\n"  # a flat corner: nothing correlates with it
-    lab = tracks.positions(run(clips, known("one"), wrong)["lab"], "one")
-    assert np.flatnonzero(np.isfinite(lab[:, 0, 0])).tolist() == [4]
-
-
-def test_without_truth_only_what_needs_no_start_runs(clips: ClipSet) -> None:
-    assert list(run(clips, tracks.empty())) == ["centre"]
-
-
-def test_an_unknown_baseline_is_refused() -> None:
-    with pytest.raises(ValueError, match="flownet"):
-        BaselineParams(names=["lab", "flownet"], box_radii=1.5)
+def test_settings_cross_to_other_processes(params: BaselineParams) -> None:
+    settings = Settings(params, TEMPLATE, 5.0, known_flows(params))
+    assert pickle.loads(pickle.dumps(settings)).params == params
