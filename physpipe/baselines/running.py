@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from physpipe.baselines.dense_flow import Remembered
+from physpipe.baselines.flows import Remembered
 from physpipe.baselines.zoo import BASELINES, Finder, Follower, Settings
 from physpipe.core.errors import InputError
 from physpipe.core.parallel import in_parallel

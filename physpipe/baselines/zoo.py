@@ -8,16 +8,8 @@ from pydantic import Field, field_validator
 
 from physpipe.baselines.background import BackgroundParams, Model, median_blobs, subtracted_blobs
 from physpipe.baselines.constant import Centre, Persistence
-from physpipe.baselines.dense_flow import (
-    DisParams,
-    FarnebackParams,
-    Flow,
-    FlowBlob,
-    FlowParams,
-    FlowSimple,
-    dis,
-    farneback,
-)
+from physpipe.baselines.dense_flow import FlowBlob, FlowParams, FlowSimple
+from physpipe.baselines.flows import DisParams, FarnebackParams, Flow, dis, farneback
 from physpipe.baselines.linking import Find, FinderParams, FinderTracker
 from physpipe.baselines.lucas_kanade import LucasKanade, LucasKanadeParams
 from physpipe.baselines.spots import TrackpyParams, odd_diameter_px, spots
