@@ -19,6 +19,8 @@ from experiments.records import CommandError, Experiment, Result, read_results, 
 from experiments.spread import Row, over_seeds
 from experiments.tables import page
 
+RECIPES = {"sequential": "unsupervised", "joint": "unsupervised_joint"}
+"""Recipe of our tracker to the key of its rows; the second is told no number of objects."""
 JSON, PAGE, SPEED = Path("docs/results/trackers.json"), Path("docs/results.md"), Path("benchmarks/speed.json")
 FILM = Path("data/raw")
 Table = dict[str, dict[str, Row]]
@@ -39,22 +41,31 @@ def runnable(datasets: Mapping[str, Any], film: Path) -> tuple[list[str], dict[s
 
 def _cost(section: Mapping[str, Any]) -> tuple[int, int]:
     frames = section["simulate"]["clips"] * section["ingest"]["clip_frames"] if "simulate" in section else 0
-    return section["motion"]["objects"], frames
+    return section["motion"]["objects"] or 1, frames
 
 
 def experiments(
     names: Sequence[str], datasets: Mapping[str, Any], seeds: Sequence[int]
-) -> dict[tuple[str, int], Experiment]:
-    """(data set, seed) to its experiment, in the order to run."""
+) -> dict[tuple[str, str, int], Experiment]:
+    """(data set, recipe, seed) to its experiment, in the order to run."""
     return {
-        (name, seed): Experiment(f"results-{name}-seed{seed}", tracker_only(name, seed, "simulate" in datasets[name]))
+        (name, recipe, seed): Experiment(
+            f"results-{name}-{recipe}-seed{seed}",
+            (*tracker_only(name, seed, "simulate" in datasets[name]), *_told(recipe, name)),
+        )
         for name in names
+        for recipe in RECIPES
         for seed in seeds
     }
 
 
+def _told(recipe: str, name: str) -> tuple[str, ...]:
+    chosen = f"tracker.recipe={recipe}"
+    return (chosen, f"datasets.{name}.motion.objects=null") if recipe == "joint" else (chosen,)
+
+
 def collect(
-    wanted: Mapping[tuple[str, int], Experiment],
+    wanted: Mapping[tuple[str, str, int], Experiment],
     results: Mapping[Experiment, Result],
     speed: Mapping[str, Mapping[str, float]],
 ) -> Table:
@@ -63,12 +74,13 @@ def collect(
     `speed` is data set to tracker to frames/s.
     """
     table: Table = {}
-    for name in dict.fromkeys(key[0] for key in wanted):
-        found = {key[1]: results[each] for key, each in wanted.items() if key[0] == name and each in results}
+    for name, recipe in dict.fromkeys(key[:2] for key in wanted):
+        found = {key[2]: results[each] for key, each in wanted.items() if key[:2] == (name, recipe) and each in results}
         for tracker in next(iter(found.values())).trackers[name] if found else ():
             rows = {seed: each.trackers[name][tracker] for seed, each in found.items()}
-            rate = speed.get(name, {}).get(tracker)
-            table.setdefault(name, {})[tracker] = {**over_seeds(rows), **_about(found), "frames_per_s": rate}
+            key = tracker.replace("unsupervised", RECIPES[recipe])
+            rate = speed.get(name, {}).get(key)
+            table.setdefault(name, {}).setdefault(key, {**over_seeds(rows), **_about(found), "frames_per_s": rate})
     return table
 
 

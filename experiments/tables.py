@@ -5,7 +5,8 @@ from typing import Any
 
 from experiments.spread import Row
 
-OURS = "unsupervised"
+OURS = ("unsupervised_joint", "unsupervised")
+"""Our trackers, the default recipe's first."""
 LEARNED = ("unsupervised", "flow_")
 """Beginnings of the names of trackers that were trained."""
 NO_TOOLS = ("centre", "persistence")
@@ -32,7 +33,10 @@ HEAD = """# Results
 
 Written by `make results` from docs/results/trackers.json, which holds more. Mean over seeds, with the worst seed in
 brackets where seeds differ; test clips only, in pixels of a 128-px frame. "paper" is the figure printed in Ehrhardt et
-al. 2018; for a simulated stand-in, that of the real set. Trackers other than `unsupervised` and `flow_*` learn nothing.
+al. 2018; for a simulated stand-in, that of the real set. `unsupervised` finds one object after the other and is told how
+many there are, `unsupervised_joint` finds all at once and is told nothing; `_unrefined` are the same before positions are
+moved to the objects' middles. Trackers other than these and `flow_*` learn nothing. `lab`, `lucas_kanade`, `*_simple` and
+`*_blob` of a dense flow are told where each object is when it first shows, `trackpy` how large it is.
 """
 
 
@@ -50,7 +54,7 @@ def page(table: Mapping[str, Mapping[str, Row]], unrun: Mapping[str, str], speed
 def verdict(rows: Mapping[str, Row]) -> str:
     """Which tool that learns nothing is best in mean and in 99th percentile, and whether ours is."""
     tools = {name: row for name, row in rows.items() if not name.startswith(LEARNED) and name not in NO_TOOLS}
-    ours = rows.get(OURS, {})
+    ours = _ours(rows)
     sentences = []
     for key, what in (("mean_px", "mean"), ("p99_px", "99th percentile")):
         known = {name: row[key] for name, row in tools.items() if row.get(key) is not None}
@@ -66,14 +70,18 @@ def verdict(rows: Mapping[str, Row]) -> str:
 
 def _section(name: str, rows: Mapping[str, Row]) -> str:
     columns = {key: head for key, head in COLUMNS.items() if any(row.get(key) is not None for row in rows.values())}
-    order = sorted(rows, key=lambda each: (not each.startswith(OURS), _rank(rows[each])))
+    order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
     lines = [_line(["tracker", *columns.values()]), _line(["---", *["---:"] * len(columns)])]
     lines += [_line([f"`{each}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
-    about = rows[OURS] if OURS in rows else next(iter(rows.values()))
+    about = _ours(rows) or next(iter(rows.values()))
     seeds = ", ".join(map(str, about["seeds"]))
     time = "" if about["time_s"] is None else f", {about['time_s']:.0f} s the longest seed"
     told = f"Seeds {seeds}; commit {about['commit']}; {about['machine']}{time}; finished {about['finished'][:10]}."
     return f"## {name}\n\n{told}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+
+
+def _ours(rows: Mapping[str, Row]) -> Row:
+    return next((rows[name] for name in OURS if name in rows), {})
 
 
 def _rank(row: Row) -> float:

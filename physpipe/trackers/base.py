@@ -39,7 +39,7 @@ class Tracker(Protocol):
 
 
 class JointTracker(Protocol):
-    """Finds all objects of a clip together, told nothing but how many there are."""
+    """Finds all objects of a clip together, told nothing but at most how many there are."""
 
     def track_all(
         self, frames: NDArray[np.uint8], objects: int, ignore: NDArray[np.bool_] | None = None

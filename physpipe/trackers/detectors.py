@@ -5,7 +5,7 @@ from pathlib import Path
 
 from physpipe.core.params import Section
 from physpipe.io import checkpoints
-from physpipe.trackers.joint import JointTracker
+from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
 from physpipe.trackers.linking import LinkParams
 from physpipe.trackers.refinement import RefineParams
@@ -44,10 +44,10 @@ class TrackingParams(Section):
     """How positions are moved to the objects' middles; empty = not at all (paper)."""
 
 
-def together(nets: Sequence[TrackNet], params: TrackingParams) -> SequentialTracker | JointTracker:
+def together(nets: Sequence[TrackNet], params: TrackingParams) -> SequentialTracker | PeakTracker:
     """T1 ... TK as one tracker of K objects; a detector with several peaks as one of as many as there are."""
     detectors = [LearnedTracker(each.detector, params.readout) for each in nets]
     several = nets[0].params.peaks
     if several is not None:
-        return JointTracker(detectors[0], several, params.link, params.refine)
+        return PeakTracker(detectors[0], several, params.link, params.refine)
     return SequentialTracker(detectors, params.mask)

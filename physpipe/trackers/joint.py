@@ -19,7 +19,7 @@ LOOK_FRAMES = 20
 """Latest detections of a track whose mean look it is sought by."""
 
 
-class JointTracker:
+class PeakTracker:
     """One detector with several peaks; finds all that it was taught to, alike or not."""
 
     def __init__(
@@ -27,13 +27,18 @@ class JointTracker:
     ):
         self.detector, self.peaks, self.links, self.refinement = detector, several, links, refinement
 
-    def track_all(self, frames: NDArray[np.uint8]) -> list[Trajectory]:
-        """Trajectories in (T, H, W, 3) frames, the surest first; a score is the share of the heat map."""
-        places, masses = self.detect(frames)
+    def track_all(
+        self, frames: NDArray[np.uint8], objects: int | None = None, ignore: NDArray[np.bool_] | None = None
+    ) -> list[Trajectory]:
+        """The surest `objects` trajectories in (T, H, W, 3) frames, or as many as there are, the surest first.
+
+        A score is the share of the heat map; `ignore` (T, H, W) marks pixels where nothing may be found.
+        """
+        places, masses = self.detect(frames, ignore)
         held = masses >= self.peaks.least_mass
         xy = [each[kept] for each, kept in zip(places, held, strict=True)]
         mass = [each[kept] for each, kept in zip(masses, held, strict=True)]
-        return link(xy, mass, self.links, partial(self._seek, frames))
+        return link(xy, mass, self.links, partial(self._seek, frames))[:objects]
 
     def _seek(self, frames: NDArray[np.uint8], track: Track, frame: int) -> tuple[NDArray[np.floating], float] | None:
         """Where a track that no detection claims is by its look; None without refinement, which knows looks."""
@@ -43,10 +48,12 @@ class JointTracker:
         seen, xy = np.array(track.frames)[known], np.stack(track.xy)[known]
         return Searcher(frames[seen], xy, self.refinement).near(frames[frame], track.expected(frame))
 
-    def detect(self, frames: NDArray[np.uint8]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    def detect(
+        self, frames: NDArray[np.uint8], ignore: NDArray[np.bool_] | None = None
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """(T, slots, 2) pixels and (T, slots) share of the heat map of every peak, the highest peak first."""
         stride, found = self.detector.detector.stride, []
-        for heat in self.detector.heat_maps(frames):
+        for heat in self.detector.heat_maps(frames, ignore):
             found.append(around(heat, stride, peaks(heat, stride, self.peaks), self.peaks.window_px))
         xy, mass = (torch.cat([getattr(each, name) for each in found]).cpu().numpy() for name in ("xy", "mass"))
         return xy, mass

@@ -46,7 +46,6 @@ class LearnedTracker:
     @torch.no_grad()
     def heat_maps(self, frames: NDArray[np.uint8], ignore: NDArray[np.bool_] | None = None) -> Iterator[Tensor]:
         """(B, h, w) probabilities, batch after batch."""
-        hidden = None if ignore is None else torch.from_numpy(cells(ignore, self.detector.stride)).to(device())
         for first in range(0, len(frames), self.params.batch_frames):
             part = slice(first, first + self.params.batch_frames)
             images = torch.from_numpy(np.array(frames[part])).to(device()).movedim(-1, 1)

@@ -14,7 +14,7 @@ from physpipe.core.progress import progress
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers.base import Trajectory
-from physpipe.trackers.joint import JointTracker
+from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.refinement import RefineParams, refined
 from physpipe.trackers.sequential import SequentialTracker
 
@@ -38,7 +38,7 @@ class Found(NamedTuple):
 
 
 def track_tables(
-    clips: ClipSet, tracker: SequentialTracker | JointTracker, objects: ObjectsParams, refine: RefineParams | None
+    clips: ClipSet, tracker: SequentialTracker | PeakTracker, objects: ObjectsParams, refine: RefineParams | None
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The table of every clip, and the same as it was before refinement.
 
@@ -47,7 +47,7 @@ def track_tables(
     every = {name: tracker.track_all(clips.frames(name)) for name in progress(clips.names(), "tracking clips")}
     count = objects.objects or multimode(max(1, len(each)) for each in every.values())[0]
     before = {name: _first(each, count, len(clips.times_s(name))) for name, each in every.items()}
-    if isinstance(tracker, JointTracker) and count > 1:
+    if isinstance(tracker, PeakTracker) and count > 1:
         before = _by_colour(clips, before)
     after = before
     if refine is not None:

@@ -24,7 +24,8 @@ def result(ours: float, lab: float, **more: object) -> Result:
 
 def table(*seeds: Result, speed: dict | None = None) -> dict:
     wanted = experiments(["bowls", "bowls2"], DATASETS, range(len(seeds)))
-    return collect(wanted, {wanted["bowls", seed]: each for seed, each in enumerate(seeds)}, speed or {})
+    known = {wanted["bowls", "sequential", seed]: each for seed, each in enumerate(seeds)}
+    return collect(wanted, known, speed or {})
 
 
 def test_film_runs_where_it_is_and_the_cheapest_set_first(tmp_path):
@@ -38,11 +39,26 @@ def test_film_runs_where_it_is_and_the_cheapest_set_first(tmp_path):
     assert "tray" not in absent
 
 
-def test_every_seed_of_a_set_is_an_experiment_of_its_own():
+def test_every_recipe_and_seed_of_a_set_is_an_experiment_of_its_own():
     wanted = experiments(["bowls", "tray"], DATASETS, [0, 1, 2])
-    assert list(wanted) == [(name, seed) for name in ("bowls", "tray") for seed in (0, 1, 2)]
-    assert len({each.name for each in wanted.values()}) == 6
-    assert "run.simulated=[]" in wanted["tray", 1].overrides
+    assert [key[0] for key in wanted] == 6 * ["bowls"] + 6 * ["tray"]
+    assert len({each.name for each in wanted.values()}) == 12
+    assert "run.simulated=[]" in wanted["tray", "joint", 1].overrides
+
+
+def test_one_recipe_is_told_how_many_objects_there_are_and_the_other_is_not():
+    wanted = experiments(["bowls2"], DATASETS, [0])
+    count = "datasets.bowls2.motion.objects=null"
+    assert count not in wanted["bowls2", "sequential", 0].overrides
+    assert count in wanted["bowls2", "joint", 0].overrides
+
+
+def test_each_recipe_has_a_row_of_its_own_and_the_others_are_in_once():
+    wanted = experiments(["bowls"], DATASETS, [0])
+    known = {wanted["bowls", "sequential", 0]: result(0.5, 1.0), wanted["bowls", "joint", 0]: result(0.25, 1.0)}
+    rows = collect(wanted, known, {})["bowls"]
+    assert list(rows) == ["unsupervised", "lab", "centre", "flow_blob", "unsupervised_joint"]
+    assert (rows["unsupervised"]["mean_px"], rows["unsupervised_joint"]["mean_px"]) == (0.5, 0.25)
 
 
 def test_rows_hold_mean_worst_seeds_commit_machine_and_time():
