@@ -4,7 +4,7 @@ from pathlib import Path
 
 from physpipe.core.ball import BallParams
 from physpipe.core.command import run
-from physpipe.core.params import read
+from physpipe.core.params import read, read_value
 from physpipe.io import results, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.scoring.trackers import EvaluateTrackersParams, score_trackers
@@ -14,7 +14,9 @@ def main(name: str, clips: Path, truth: Path, found: Path, verdict: Path, baseli
     """Writes figures per tracker to `out`, and every frame's error to `tracker_errors.csv` beside it."""
     params = read("evaluate_trackers", EvaluateTrackersParams)
     ball = read(f"datasets.{name}.evaluate", BallParams)
-    tables = {"unsupervised": tracks.load(found), **tracks.load_folder(baselines)}
+    tables = {"unsupervised": tracks.load(found)}
+    for each in ["untrained", *read_value("run.flow")]:  # what other runs left beside them is not looked at
+        tables |= tracks.load_folder(baselines / each)
     locked = {"unsupervised": results.load_json(verdict)["locked"]}
     figures, errors = score_trackers(ClipSet(clips), tracks.load(truth), tables, locked, params, ball)
     results.save_json(out, figures)
