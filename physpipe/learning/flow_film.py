@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from physpipe.core.images import as_images
 from physpipe.core.params import Section
@@ -49,6 +49,16 @@ class PairParams(Section):
     look: LookParams
     """Colours and light; the ground's patches are up to `mottle_px` wide and vary by up to `mottle`."""
 
+    @model_validator(mode="after")
+    def _ranges_are_ordered_and_balls_fit(self) -> "PairParams":
+        for name in ("balls", "radius_px", "rgb", "exposure", "noise", "hill_m"):
+            low, high = getattr(self, name)
+            if not 0 <= low <= high:
+                raise ValueError(f"{name} [{low}, {high}] is no range of numbers from 0 on")
+        if 2 * self.radius_px[1] + self.step_px > self.size - 1:
+            raise ValueError("the largest ball on its longest way does not fit into a picture")
+        return self
+
 
 class Pair(NamedTuple):
     """One scene at two moments."""
@@ -86,12 +96,7 @@ def draw_pair(params: PairParams, rng: np.random.Generator) -> Pair:
     for _ in range(rng.integers(params.balls[0], params.balls[1] + 1)):
         radius, way = rng.uniform(*params.radius_px), _within_disc(params.step_px, rng)
         first = _place(radius, way, params.size, rng)
-        smear = Smear(
-            np.stack([first, first + way]),
-            np.stack([way, way]) * rng.uniform(*params.exposure),
-            params.shutter_moments,
-            size,
-        )
+        smear = _smear(first, way, params, rng)
         red, green, blue = rng.integers(params.rgb[0], params.rgb[1] + 1, 3).tolist()
         shadows.append(draw_shadow(smear, radius, light, params.look))
         balls.append(draw_ball(smear, radius, (red, green, blue), light, params.look))
@@ -101,6 +106,13 @@ def draw_pair(params: PairParams, rng: np.random.Generator) -> Pair:
         for layer in [*shadows, *balls]:
             layer.paint(picture, frame)
     return Pair(_exposed(pictures, params, rng), flow, inside)
+
+
+def _smear(first: NDArray[np.float64], way: NDArray[np.float64], params: PairParams, rng: np.random.Generator) -> Smear:
+    """A ball at both moments, blurred alike by its way."""
+    blur = rng.uniform(*params.exposure) * way
+    centres = np.stack([first, first + way])
+    return Smear(centres, np.stack([blur, blur]), params.shutter_moments, (params.size, params.size))
 
 
 def draw_ground(params: PairParams, light: Light, rng: np.random.Generator) -> Image:
@@ -116,9 +128,8 @@ def draw_ground(params: PairParams, light: Light, rng: np.random.Generator) -> I
     y, x = np.ogrid[:side, :side]
     level = np.hypot((x - centre[0]) / axes[0], (y - centre[1]) / axes[1])
     shade = np.where(level < 1, shade, np.where(level < 1 + look.rim, look.rim_brightness, look.table_brightness))
-    shade = shade * (
-        1 + rng.uniform(0, look.mottle) * _smooth_noise(side, int(rng.integers(2, look.mottle_px + 1)), rng)
-    )
+    mottle, width = rng.uniform(0, look.mottle), int(rng.integers(2, look.mottle_px + 1))
+    shade = shade * (1 + mottle * _smooth_noise(side, width, rng))
     tone = rng.uniform(*look.surface_grey) + rng.uniform(-look.tint, look.tint, 3)
     return (shade[..., None] * tone).astype(np.float32)
 

@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from physpipe.core.determinism import torch_generator
 from physpipe.learning.flow_film import Pair, PairParams, as_batch, draw_pairs
@@ -124,3 +125,12 @@ def test_a_batch_holds_the_pairs_in_order():
     np.testing.assert_array_equal(batch.flow[1].permute(1, 2, 0), drawn[1].flow)
     np.testing.assert_array_equal(batch.inside[0], drawn[0].inside)
     assert 0 <= batch.first.min() <= batch.first.max() <= 1
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [({"balls": [3, 1]}, "no range"), ({"noise": [-1, 2]}, "no range"), ({"step_px": 85}, "does not fit")],
+)
+def test_what_cannot_be_drawn_is_refused(change, reason):
+    with pytest.raises(ValidationError, match=reason):
+        PairParams.model_validate(PARAMS.model_dump() | change)
