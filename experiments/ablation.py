@@ -21,7 +21,7 @@ from experiments.records import CommandError, Experiment, Result, read_results, 
 from experiments.spread import Row, over_seeds
 
 RECIPES = {"losses": "sequential", "ingredients": "joint"}
-"""Part of the ablation to its recipe: for the losses the one nearest to the paper's, for the ingredients the default."""
+"""Part of the ablation to its recipe: the losses' is the one nearest to the paper's, the ingredients' the default."""
 TRACKER = "unsupervised_unrefined"
 """Row that tells: refinement would hide what is lost."""
 LOSSES = {"disc": "causality", "ent": "entropy", "siam": "equivariance"}

@@ -33,10 +33,12 @@ HEAD = """# Results
 
 Written by `make results` from docs/results/trackers.json, which holds more. Mean over seeds, with the worst seed in
 brackets where seeds differ; test clips only, in pixels of a 128-px frame. "paper" is the figure printed in Ehrhardt et
-al. 2018; for a simulated stand-in, that of the real set. `unsupervised` finds one object after the other and is told how
-many there are, `unsupervised_joint` finds all at once and is told nothing; `_unrefined` are the same before positions are
-moved to the objects' middles. Trackers other than these and `flow_*` learn nothing. `lab`, `lucas_kanade`, `*_simple` and
-`*_blob` of a dense flow are told where each object is when it first shows, `trackpy` how large it is.
+al. 2018; for a simulated stand-in, that of the real set.
+
+`unsupervised` finds one object after the other and is told how many there are; `unsupervised_joint` finds all at once
+and is told nothing; `_unrefined` are the same before positions are moved to the objects' middles. The others learn
+nothing, but for the flow of `flow_*`. `lab`, `lucas_kanade`, `*_simple` and the `*_blob` of a flow are told where each
+object is when it first shows, `trackpy` how large it is.
 """
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from physpipe.core.ball import BallParams
 from physpipe.core.command import run
-from physpipe.core.params import read
+from physpipe.core.params import read, read_value
 from physpipe.io import results, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.scoring.trackers import EvaluateTrackersParams, score_trackers
@@ -17,10 +17,11 @@ def main(
     params = read("evaluate_trackers", EvaluateTrackersParams)
     ball = read(f"datasets.{name}.evaluate", BallParams)
     ours = {"unsupervised": tracks.load(found), "unsupervised_unrefined": tracks.load(unrefined)}
-    tables, locked = {**ours, **tracks.load_folder(baselines)}, results.load_json(verdict)["locked"]
-    figures, errors = score_trackers(
-        ClipSet(clips), tracks.load(truth), tables, dict.fromkeys(ours, locked), params, ball
-    )
+    tables, locked = ours, results.load_json(verdict)["locked"]
+    for each in ["untrained", *read_value("run.flow")]:  # what other runs left beside them is not looked at
+        tables = tables | tracks.load_folder(baselines / each)
+    verdicts = dict.fromkeys(ours, locked)
+    figures, errors = score_trackers(ClipSet(clips), tracks.load(truth), tables, verdicts, params, ball)
     results.save_json(out, figures)
     results.save_csv(out.parent / "tracker_errors.csv", errors)
 

@@ -11,7 +11,10 @@ from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
 from physpipe.core.params import read, read_value
 from physpipe.core.prediction import PredictParams
+from physpipe.flownet.network import CorrFlow
 from physpipe.ingest.dataset import IngestParams
+from physpipe.learning.flow import FlowParams
+from physpipe.learning.flow_film import as_batch, draw_pairs
 from physpipe.learning.tracking import ObjectsParams, TrackerParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
@@ -54,6 +57,16 @@ def test_every_recipe_of_the_tracker_takes_a_step(recipe):
     assert {"order_nats", "entropy_nats", "siamese_px2"} <= set(parts)
 
 
+@pytest.mark.parametrize("name", list(PARAMS["flow"]))
+def test_every_flow_network_is_small_and_takes_a_step(name):
+    params = read(f"flow.{name}", FlowParams, PATH)
+    net = CorrFlow(params.network)
+    assert sum(each.numel() for each in net.parameters()) <= 1_000_000
+    loss, _ = net.loss(as_batch(draw_pairs(params.pairs, 1, torch_generator(0))), torch_generator(1))
+    loss.backward()
+    assert torch.isfinite(loss)
+
+
 def test_the_plain_recipe_is_the_paper_s():
     net = read("tracker", TrackerParams, PATH).recipes["paper"].net
     assert (net.losses.causality, net.losses.entropy, net.losses.equivariance) == (1, 0.01, 0.001)
@@ -65,7 +78,8 @@ def test_the_plain_recipe_is_the_paper_s():
 def test_the_file_is_in_block_style_so_that_an_override_changes_one_line():
     lines = PATH.read_text().splitlines()
     assert [line for line in lines if len(line) > 80] == []
-    assert [line for line in lines if line.split("#")[0].rstrip().endswith(("}", "]"))] == []
+    values = [line.split("#")[0].rstrip() for line in lines]
+    assert [each for each in values if each.endswith(("}", "]")) and not each.endswith("[]")] == []  # [] has no block
 
 
 @pytest.mark.parametrize("emptied", ["simulated", "learned", "supervised"])

@@ -6,10 +6,10 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from pydantic import Field
-from torch import Tensor
 
 from physpipe.core.determinism import device
 from physpipe.core.errors import InputError
+from physpipe.core.images import as_images
 from physpipe.core.params import Section
 from physpipe.io.clips import ClipSet
 from physpipe.tracknet.discriminator import MOMENTS
@@ -23,11 +23,6 @@ class MomentParams(Section):
     """Frames between two moments, one drawn at random; [1] = consecutive frames (paper)."""
     background_frames: int = Field(ge=3)
     """Frames of a recording, of all its clips that are learned from, whose median is its background."""
-
-
-def as_images(frames: NDArray[np.uint8]) -> Tensor:
-    """(..., H, W, 3) uint8 to (..., 3, H, W) float in [0, 1] on the computing device."""
-    return torch.from_numpy(frames).to(device()).movedim(-1, -3).float() / 255
 
 
 def background(films: Sequence[NDArray[np.uint8]], count: int) -> NDArray[np.uint8]:

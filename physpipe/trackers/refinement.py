@@ -135,12 +135,12 @@ def _profile(look: Floats, distance: NDArray[np.float64]) -> Floats:
 def _radius(profile: Floats) -> float:
     """Distance in pixels at which the colour is half-way from the object's to its surroundings'."""
     contrast = np.linalg.norm(profile - profile[-3:].mean(axis=0), axis=1)
-    half = contrast[:4].max() / 2
+    half = float(contrast[:4].max()) / 2
     beyond = np.flatnonzero(contrast < half)
     if not len(beyond) or beyond[0] == 0:
         return len(profile) / 2
-    at = int(beyond[0])
-    return float(at - 1 + (contrast[at - 1] - half) / (contrast[at - 1] - contrast[at]))
+    last, first = float(contrast[beyond[0] - 1]), float(contrast[beyond[0]])
+    return float(beyond[0] - 1 + (last - half) / (last - first))
 
 
 def _telling_colours(looks: Floats, distance: NDArray[np.float64], radius: float) -> Floats:
@@ -150,7 +150,7 @@ def _telling_colours(looks: Floats, distance: NDArray[np.float64], radius: float
     apart = np.median(inside, axis=0) - np.median(outside, axis=0)
     spread = np.cov(inside.T) + np.cov(outside.T) + np.eye(3)  # one LAB unit: a flat colour has some noise, too
     mix = np.linalg.solve(spread, apart)
-    return (mix / max(np.linalg.norm(mix), 1e-9)).astype(np.float32)
+    return (mix / max(float(np.linalg.norm(mix)), 1e-9)).astype(np.float32)
 
 
 def _fit(patch: Floats, template: Floats, disc: Floats, search: int) -> tuple[Floats, float]:
