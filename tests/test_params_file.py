@@ -18,7 +18,7 @@ from physpipe.learning.flow_film import as_batch, draw_pairs
 from physpipe.learning.tracking import ObjectsParams, TrackerParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
-from physpipe.scenes.worlds import WorldParams
+from physpipe.scenes.presets import PresetsParams, SimulateParams
 from physpipe.tracknet.model import TrackNet
 from physpipe.tracknet.moments import Moments
 
@@ -30,11 +30,31 @@ RECIPES = list(PARAMS["tracker"]["recipes"])
 @pytest.mark.parametrize("name", list(PARAMS["datasets"]))
 def test_every_data_set_has_all_its_sections(name):
     kinds = {"ingest": IngestParams, "motion": ObjectsParams, "evaluate": BallParams, "predict": PredictParams}
-    if name in read_value("run.simulated", PATH):
-        kinds["simulate"] = WorldParams
+    if "simulate" in PARAMS["datasets"][name]:
+        kinds["simulate"] = SimulateParams
     assert set(PARAMS["datasets"][name]) == set(kinds)
     for section, kind in kinds.items():
         read(f"datasets.{name}.{section}", kind, PATH)
+
+
+@pytest.mark.parametrize("name", [name for name in PARAMS["datasets"] if "simulate" in PARAMS["datasets"][name]])
+def test_every_simulated_set_names_presets_that_exist_in_each_of_its_sizes(name):
+    simulated = read(f"datasets.{name}.simulate", SimulateParams, PATH)
+    for size in simulated.sizes:
+        world = simulated.model_copy(update={"size": size}).world(read("presets", PresetsParams, PATH), name)
+        assert world.balls.count == read(f"datasets.{name}.motion", ObjectsParams, PATH).objects
+
+
+def test_every_preset_is_used():
+    named = [each["simulate"] for each in PARAMS["datasets"].values() if "simulate" in each]
+    for plural, key in {"terrains": "terrain", "palettes": "palette", "looks": "look", "cameras": "camera"}.items():
+        assert set(PARAMS["presets"][plural]) == {each[key] for each in named}
+    assert set(PARAMS["presets"]["physics"]) == {each["physics"] for each in named}
+
+
+def test_simulated_sets_are_exactly_those_with_a_simulate_section():
+    simulated = set(read_value("run.simulated", PATH))
+    assert {name for name in read_value("run.datasets", PATH) if "simulate" in PARAMS["datasets"][name]} == simulated
 
 
 def test_what_runs_by_default_needs_no_film_of_the_user():

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from physpipe.scenes.terrain import Bowl, BowlParams
+from physpipe.scenes.bowl import Bowl, BowlParams
 
-PARAMS = BowlParams(kind="bowl", rim_radius_m=(0.2, 0.3), depth_m=(0.15, 0.2), cut=0.7)
+PARAMS = BowlParams(kind="bowl", fixed=False, rim_radius_m=(0.2, 0.3), depth_m=(0.15, 0.2), cut=0.7)
 
 
 @pytest.fixture
@@ -47,4 +47,4 @@ def test_surface_is_an_ellipsoid(bowl: Bowl) -> None:
 
 def test_unordered_range_is_refused() -> None:
     with pytest.raises(ValidationError, match="no range"):
-        BowlParams(kind="bowl", rim_radius_m=(0.3, 0.2), depth_m=(0.15, 0.2), cut=0.7)
+        BowlParams(kind="bowl", fixed=False, rim_radius_m=(0.3, 0.2), depth_m=(0.15, 0.2), cut=0.7)
