@@ -125,7 +125,7 @@ def record(params: WorldParams, name: str, number: int) -> Recording:
 
 
 def track(params: WorldParams, name: str, number: int) -> Trajectory:
-    """The motion of clip `number` from the release on, without filming it: some 20 ms."""
+    """The motion of clip `number` from the release on, without filming it: the cheaper half."""
     chances = Chances.of(name, number)
     return _roll_inside(params, draw_balls(params, chances.balls), chances)[1]
 

@@ -9,10 +9,11 @@ import yaml
 from simulated import of_the_project
 
 from physpipe.core.errors import InputError
+from physpipe.scenes.balls import Ball
 from physpipe.scenes.film import Camera
 from physpipe.scenes.look import Light
 from physpipe.scenes.physics import DENSITY
-from physpipe.scenes.render import draw_terrain
+from physpipe.scenes.render import Scene, draw_terrain
 from physpipe.scenes.worlds import Chances, WorldParams, draw_balls, record, simulate, surface_rng, terrain_of, track
 from stages.simulate import main
 
@@ -96,6 +97,24 @@ def test_stand_ins_have_the_papers_balls(name: str) -> None:
     scale = world.camera.pixels_per_metre * 128 / min(world.camera.width, world.camera.height)
     np.testing.assert_allclose(scale * np.array(world.balls.radius_m), [3.2, 6.4], atol=0.05)
     assert len(set(world.palette)) == 7
+
+
+@pytest.mark.parametrize("name", ["heights", *FIXED])
+def test_drawn_ball_is_where_truth_says(name: str) -> None:
+    """The middle of what the ball's colour changes in the picture is the projected truth, smeared or not, to 0.1 px."""
+    world = of_the_project(name)
+    world = world.model_copy(update={"moving_frames": 40, "look": world.look.model_copy(update={"ambient": 1})})
+    chances = Chances.of(name, 0)
+    radius = draw_balls(world, chances.balls)[0].radius_m
+    xyz = track(world, name, 0).xyz_m
+    camera = Camera(world.camera, len(xyz), np.random.default_rng(0))
+    xy = camera.project(xyz)
+    scene = Scene(world.look, terrain_of(world, chances), camera, np.random.default_rng(1), np.random.default_rng(2))
+    red, black = (np.stack(list(scene.film(xyz, xy, [Ball(rgb, radius)])))[..., 0] for rgb in ((255, 0, 0), (0, 0, 0)))
+    cover = (red - black).astype(float)
+    rows, columns = np.indices(cover.shape[1:])
+    seen = np.stack([(cover * columns).sum((1, 2)), (cover * rows).sum((1, 2))], axis=1) / cover.sum((1, 2))[:, None]
+    assert np.linalg.norm(seen - xy[:, 0], axis=1).max() < 0.1
 
 
 def test_ball_starts_clear_of_the_cushions() -> None:
