@@ -15,6 +15,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import yaml
+from scipy.stats import spearmanr
 
 from experiments.queue import run_missing
 from experiments.records import CommandError, Experiment, Result, read_results, tracker_only
@@ -79,17 +80,32 @@ def experiments(dataset: str, simulated: bool, seeds: Sequence[int]) -> dict[tup
 def collect(
     wanted: Mapping[tuple[str, str, int], Experiment], results: Mapping[Experiment, Result], dataset: str
 ) -> dict[str, Any]:
-    """What metrics/ablation.json holds: part to row to figures; a row that lacks a seed is null."""
-    parts: dict[str, Any] = {"dataset": dataset}
+    """What metrics/ablation.json holds: part to row to figures, null for a row that lacks a seed; and `choice`."""
+    parts: dict[str, Any] = {"dataset": dataset, "choice": {}}
     for part, rows in variants().items():
         parts[part] = {}
         for row in rows:
             mine = {key[2]: results.get(each) for key, each in wanted.items() if key[:2] == (part, row)}
             found = {seed: result for seed, result in mine.items() if result}
             parts[part][row] = _row(found, dataset, TRACKER) if len(found) == len(mine) else None
+        runs = [
+            results[each].trackers[dataset][TRACKER]
+            for key, each in wanted.items()
+            if key[0] == part and each in results
+        ]
+        parts["choice"][part] = choice(runs)
     full = {key[2]: results[each] for key, each in wanted.items() if key[1] == ALL_LOSSES and each in results}
     parts["losses"][CONSTANT] = _row(full, dataset, "centre") if full else None
     return parts
+
+
+def choice(runs: Sequence[Row]) -> Row:
+    """How well the score that chooses starts and checkpoints without labels orders runs by their true mean error:
+    Spearman's rank correlation, null below three runs that have both.
+    """
+    known = [(row["score"], row["mean_px"]) for row in runs if None not in (row.get("score"), row.get("mean_px"))]
+    correlation = spearmanr(*zip(*known, strict=True)).statistic if len(known) > 2 else None
+    return {"runs": len(known), "spearman": None if correlation is None else round(float(correlation), 3)}
 
 
 def _row(found: Mapping[int, Result], dataset: str, tracker: str) -> Row:

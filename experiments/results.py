@@ -40,8 +40,9 @@ def runnable(datasets: Mapping[str, Any], film: Path) -> tuple[list[str], dict[s
 
 
 def _cost(section: Mapping[str, Any]) -> tuple[int, int]:
-    frames = section["simulate"]["clips"] * section["ingest"]["clip_frames"] if "simulate" in section else 0
-    return section["motion"]["objects"] or 1, frames
+    simulated = section.get("simulate")
+    clips = simulated["sizes"][simulated["size"]]["clips"] if simulated else 0
+    return section["motion"]["objects"] or 1, clips * section["ingest"]["clip_frames"]
 
 
 def experiments(

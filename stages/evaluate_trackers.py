@@ -17,10 +17,10 @@ def main(
     params = read("evaluate_trackers", EvaluateTrackersParams)
     ball = read(f"datasets.{name}.evaluate", BallParams)
     ours = {"unsupervised": tracks.load(found), "unsupervised_unrefined": tracks.load(unrefined)}
-    tables, locked = ours, results.load_json(verdict)["locked"]
+    tables = ours
     for each in ["untrained", *read_value("run.flow")]:  # what other runs left beside them is not looked at
         tables = tables | tracks.load_folder(baselines / each)
-    verdicts = dict.fromkeys(ours, locked)
+    verdicts = dict.fromkeys(ours, results.load_json(verdict))
     figures, errors = score_trackers(ClipSet(clips), tracks.load(truth), tables, verdicts, params, ball)
     results.save_json(out, figures)
     results.save_csv(out.parent / "tracker_errors.csv", errors)

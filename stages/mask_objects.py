@@ -21,7 +21,7 @@ def main(name: str, clips: Path, first: Path, out: Path) -> None:
     folder = scratch("mask_objects", [params, compute, objects], [clips, first])
     net = detectors.load(first / detectors.WEIGHTS)[0]
     others = learn_others(ClipSet(clips), net, objects, params, compute, folder)
-    save_all(out, ClipSet(clips), first, others, params.lock)
+    save_all(out, ClipSet(clips), first, others, params)
     forget(folder)
 
 

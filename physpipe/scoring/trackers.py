@@ -50,16 +50,16 @@ def score_trackers(
     clips: ClipSet,
     truth: pd.DataFrame,
     tables: Mapping[str, pd.DataFrame],
-    locked: Mapping[str, bool],
+    verdicts: Mapping[str, Mapping[str, bool | float]],
     params: EvaluateTrackersParams,
     ball: BallParams,
 ) -> tuple[dict[str, dict[str, float | bool | None]], pd.DataFrame]:
     """Figures per tracker, and one row per tracker, clip, object and frame with its error (NaN where lost).
 
-    `locked` is each tracker's own verdict on itself; null where it gives none. Without an annotated test clip every
-    figure is null and `clips` is 0. Errors are those of the tracks that fit the objects best over a clip, one to one: a
-    track too many is passed over, an object without a track is lost. Figures of identity count both, and are null for
-    one object.
+    `verdicts` holds what a tracker says of itself without labels: `locked` and `score`, null where it is silent.
+    Without an annotated test clip every figure is null and `clips` is 0. Errors are those of the tracks that fit the
+    objects best over a clip, one to one: a track too many is passed over, an object without a track is lost. Figures of
+    identity count both, and are null for one object.
     """
     cases = _cases(clips, truth, params.other_motion, ball.ball_radius_px)
     figures: dict[str, dict[str, float | bool | None]] = {}
@@ -71,7 +71,7 @@ def score_trackers(
         figures[name] = {
             **_figures(found, cases, errors, params, ball),
             **_identity(known, tracks.ambiguous(table), cases, 2 * ball.ball_radius_px),
-            "locked": locked.get(name),
+            **{key: verdicts.get(name, {}).get(key) for key in ("locked", "score")},
         }
         rows.append(errors.assign(tracker=name)[ERRORS])
     return figures, pd.concat(rows, ignore_index=True)

@@ -32,15 +32,19 @@ def causality_by_coin(judge: Discriminator, xy: Tensor, weights: Tensor, generat
     return (weights * F.softplus(torch.where(heads.to(xy.device), -logits, logits))).sum()
 
 
-def motion_target(frames: Tensor, background: Tensor, stride: int) -> Tensor:
+def motion_target(frames: Tensor, background: Tensor, stride: int, even: float) -> Tensor:
     """(B, h, w) distribution of where (B, 3, H, W) frames differ from their clip's background.
 
-    Squared residuals less their median over the frame (noise, light), so that only what stands out is left.
+    Squared residuals less what most of the frame shows (noise, light), so that only what stands out is left. Above 0,
+    `even` is the share of the frame's strongest motion at which motion counts half: objects of little contrast then
+    weigh nearly as much as others.
     """
     residual = (frames - background).square().mean(1, keepdim=True)
     pooled = F.avg_pool2d(residual, stride)[:, 0]
     floor = pooled.flatten(1).quantile(0.9, dim=1)[:, None, None]
     above = (pooled - floor).clamp_min(0).square()
+    if even:
+        above = above / (above + even * above.flatten(1).max(1).values[:, None, None].clamp_min(1e-12))
     return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
 
 

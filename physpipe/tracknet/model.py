@@ -105,7 +105,8 @@ class TrackNet(nn.Module):
         return loss, {"motion_nats": loss.item()}
 
     def _motion(self, batch: Moments, logits: Tensor) -> Tensor:
-        return motion_cross_entropy(logits, batch.outside_mask(batch.motion(self.detector.stride)))
+        even = self.params.peaks.even if self.params.peaks else 0.0
+        return motion_cross_entropy(logits, batch.outside_mask(batch.motion(self.detector.stride, even)))
 
     def _paper(
         self, batch: Moments, frames: Tensor, logits: Tensor, generator: torch.Generator

@@ -19,10 +19,11 @@ class Moments:
     ignored: Tensor | None = None
     """(B, 5, h, w) heat-map cells where nothing may be found (sequential masking), or None."""
 
-    def motion(self, stride: int) -> Tensor:
-        """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included."""
+    def motion(self, stride: int, even: float = 0.0) -> Tensor:
+        """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included; `even` as in
+        `motion_target`."""
         background = self.background.repeat_interleave(self.frames.shape[1], 0)
-        return motion_target(self.frames.flatten(0, 1), background, stride)
+        return motion_target(self.frames.flatten(0, 1), background, stride, even)
 
     def outside_mask(self, cells: Tensor) -> Tensor:
         """(B * 5, h, w) `cells`, 0 where ignored."""

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from dvc.utils.hydra import apply_overrides
 
-from experiments.ablation import collect, draw, experiments, variants
+from experiments.ablation import choice, collect, draw, experiments, variants
 from experiments.records import Result
 from physpipe.core.params import read
 from physpipe.learning.tracking import TrackerParams
@@ -61,6 +61,12 @@ def test_rows_are_means_over_seeds_and_a_row_that_lacks_a_seed_is_null(tmp_path)
     assert parts["losses"]["const"]["locked"] is None
     draw(tmp_path / "bars.png", parts)
     assert (tmp_path / "bars.png").stat().st_size > 10_000
+
+
+def test_the_choice_is_judged_by_the_ranks_of_scores_and_errors():
+    runs = [{"score": score, "mean_px": px} for score, px in [(0.1, 1.0), (0.2, 1.5), (0.9, 40.0), (0.3, 1.2)]]
+    assert choice(runs) == {"runs": 4, "spearman": 0.8}  # 1 - 6 (0 + 1 + 0 + 1) / (4 * 15)
+    assert choice([{"score": None, "mean_px": 1.0}, *runs[:2]]) == {"runs": 2, "spearman": None}
 
 
 def test_nothing_run_is_all_null_and_still_drawn(tmp_path):

@@ -51,7 +51,7 @@ def table(**positions: np.ndarray) -> pd.DataFrame:
 
 
 def score(clips: ClipSet, truth: pd.DataFrame, **tables: pd.DataFrame) -> tuple[dict, pd.DataFrame]:
-    return score_trackers(clips, truth, tables, {"ours": True}, PARAMS, BALL)
+    return score_trackers(clips, truth, tables, {"ours": {"locked": True, "score": 0.2}}, PARAMS, BALL)
 
 
 def test_a_tracker_fed_the_truth_scores_exactly_zero(clips: ClipSet) -> None:
@@ -126,6 +126,7 @@ def test_without_truth_every_figure_is_null(clips: ClipSet, tmp_path: Path) -> N
         assert read[name].keys() == full.keys()
         assert read[name].pop("clips") == read[name].pop("frames") == 0
         assert read[name].pop("locked") is locked
+        assert read[name].pop("score") == (0.2 if locked else None)
         assert set(read[name].values()) == {None}
 
 
