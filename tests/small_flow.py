@@ -10,6 +10,8 @@ def params(steps: int) -> FlowParams:
         "tint": 10,
         "mottle": 0.1,
         "mottle_px": 8,
+        "dye": [1, 1, 1],
+        "texture": None,
         "contour_m": 0.08,
         "contour_contrast": 0.1,
         "rim": 0.05,

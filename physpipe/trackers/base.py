@@ -19,6 +19,8 @@ class Trajectory:
     """(T,) confidence in [0, 1]."""
     ambiguous: NDArray[np.bool_] | None = None
     """(T,) frames in which it may be another object of the same kind; None where a tracker does not say."""
+    still: bool = False
+    """Whether it was seen not to move in the whole clip, as far as a tracker says."""
 
 
 class Tracker(Protocol):

@@ -28,6 +28,9 @@ class LinkParams(Section):
     """Share of a clip's frames in which an object must be detected; what shows more briefly is dropped."""
     doubt_px: float = Field(ge=0)
     """Two tracks that would cost less than this more when exchanged are ambiguous there."""
+    still_px: float = Field(ge=0)
+    """Root mean square distance from its mean place below which a track is still: more likely a mark on the ground that
+    the camera's wobble moves than an object."""
 
 
 @dataclass
@@ -57,14 +60,15 @@ class Track:
         if detected:
             self.detected.append(frame)
 
-    def trajectory(self, length: int) -> Trajectory:
+    def trajectory(self, length: int, still_px: float) -> Trajectory:
         """Over all frames of the clip, straight lines over gaps: NaN before the first detection and after the last
         place."""
         within = np.arange(self.frames[0], self.frames[-1] + 1)
         xy, score = np.full((length, 2), np.nan, np.float32), np.zeros(length, np.float32)
         xy[within] = np.stack([np.interp(within, self.frames, axis) for axis in np.transpose(self.xy)], axis=1)
         score[self.frames] = self.score
-        return Trajectory(xy, score, np.isin(np.arange(length), sorted(self.doubts)))
+        still = bool(np.stack(self.xy).var(axis=0).sum() < still_px**2)
+        return Trajectory(xy, score, np.isin(np.arange(length), sorted(self.doubts)), still)
 
 
 Seek = Callable[[Track, int], "tuple[Floats, float] | None"]
@@ -72,7 +76,8 @@ Seek = Callable[[Track, int], "tuple[Floats, float] | None"]
 
 
 def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams, seek: Seek) -> list[Trajectory]:
-    """Tracks of a clip from the (n_t, 2) places and (n_t,) scores found in each of its frames, the surest first."""
+    """Tracks of a clip from the (n_t, 2) places and (n_t,) scores found in each of its frames: those that move, the
+    surest first, then those that are still."""
     living: list[Track] = []
     ended: list[Track] = []
     for frame, (xy, score) in enumerate(zip(places, scores, strict=True)):
@@ -90,7 +95,7 @@ def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams,
         living += born
     kept = [each for each in ended + living if len(each.detected) >= params.least_share * len(places)]
     kept.sort(key=lambda track: (-sum(track.score), track.frames[0]))
-    return [track.trajectory(len(places)) for track in kept]
+    return sorted((track.trajectory(len(places), params.still_px) for track in kept), key=lambda each: each.still)
 
 
 def _assigned(living: list[Track], xy: Floats, frame: int, params: LinkParams) -> dict[int, int]:

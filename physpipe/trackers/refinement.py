@@ -133,14 +133,16 @@ def _profile(look: Floats, distance: NDArray[np.float64]) -> Floats:
 
 
 def _radius(profile: Floats) -> float:
-    """Distance in pixels at which the colour is half-way from the object's to its surroundings'."""
+    """Distance in pixels at which the colour is half-way from the object's to its surroundings'; such that pixels of both
+    are within the profile."""
     contrast = np.linalg.norm(profile - profile[-3:].mean(axis=0), axis=1)
     half = float(contrast[:4].max()) / 2
     beyond = np.flatnonzero(contrast < half)
-    if not len(beyond) or beyond[0] == 0:
-        return len(profile) / 2
-    last, first = float(contrast[beyond[0] - 1]), float(contrast[beyond[0]])
-    return float(beyond[0] - 1 + (last - half) / (last - first))
+    radius = len(profile) / 2
+    if len(beyond) and beyond[0] > 0:
+        last, first = float(contrast[beyond[0] - 1]), float(contrast[beyond[0]])
+        radius = float(beyond[0] - 1 + (last - half) / (last - first))
+    return float(np.clip(radius, 1.5, len(profile) / 1.7))
 
 
 def _telling_colours(looks: Floats, distance: NDArray[np.float64], radius: float) -> Floats:

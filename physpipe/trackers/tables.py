@@ -23,7 +23,7 @@ class ObjectsParams(Section):
     """What moves in a data set's clips."""
 
     objects: int | None = Field(ge=1)
-    """Number of objects; empty = as many as are found in most clips, for a tracker that finds all at once."""
+    """Number of objects; empty = as many as move in most clips, for a tracker that finds all at once."""
 
 
 class Found(NamedTuple):
@@ -45,7 +45,7 @@ def track_tables(
     Object k is the same through a clip, and as far as colours tell it looks the same in all clips.
     """
     every = {name: tracker.track_all(clips.frames(name)) for name in progress(clips.names(), "tracking clips")}
-    count = objects.objects or multimode(max(1, len(each)) for each in every.values())[0]
+    count = objects.objects or multimode(max(1, sum(not each.still for each in found)) for found in every.values())[0]
     before = {name: _first(each, count, len(clips.times_s(name))) for name, each in every.items()}
     if isinstance(tracker, PeakTracker) and count > 1:
         before = _by_colour(clips, before)

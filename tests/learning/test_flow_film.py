@@ -13,6 +13,8 @@ LOOK = {
     "tint": 30,
     "mottle": 0.12,
     "mottle_px": 16,
+    "dye": [1, 1, 1],
+    "texture": None,
     "contour_m": 0.08,
     "contour_contrast": 0.15,
     "rim": 0.05,

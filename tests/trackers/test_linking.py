@@ -5,7 +5,7 @@ import pytest
 
 from physpipe.trackers.linking import LinkParams, Track, link
 
-LINKS = LinkParams(gate_px=6, memory_frames=4, least_share=0.3, doubt_px=3)
+LINKS = LinkParams(gate_px=6, memory_frames=4, least_share=0.3, doubt_px=3, still_px=2)
 T = 30
 
 
@@ -71,6 +71,16 @@ def test_what_shows_too_briefly_is_dropped():
     assert len(link(*detections(straight((5, 5), (1, 0)), brief), LINKS, nowhere)) == 1
 
 
+def test_what_never_moves_comes_last_however_sure():
+    rng = np.random.default_rng(0)
+    wobbling = straight((50, 5), (0, 0)) + rng.uniform(-1.5, 1.5, (T, 2))
+    places, scores = detections(wobbling, straight((5, 5), (0.5, 0)))
+    moving, still = link(places, scores, LINKS, nowhere)
+    assert still.score.sum() > moving.score.sum()
+    assert (moving.still, still.still) == (False, True)
+    np.testing.assert_allclose(still.xy, wobbling, atol=1e-5)
+
+
 def test_nothing_detected_is_no_track():
     assert link([np.empty((0, 2))] * T, [np.empty(0)] * T, LINKS, nowhere) == []
 
@@ -96,7 +106,9 @@ def test_objects_that_touch_and_look_like_one_are_sought_apart_and_are_ambiguous
         nearest = min(truth, key=lambda k: np.linalg.norm(truth[k][frame] - expected))
         return (truth[nearest][frame], 0.5) if alike else None
 
-    found = link(*detections(*seen), LinkParams(gate_px=6, memory_frames=12, least_share=0.3, doubt_px=3), by_look)
+    found = link(
+        *detections(*seen), LinkParams(gate_px=6, memory_frames=12, least_share=0.3, doubt_px=3, still_px=2), by_look
+    )
     assert len(found) == 2
     assert found[0].ambiguous[near].all()
     assert not found[0].ambiguous[: np.flatnonzero(near)[0] - 3].any()
