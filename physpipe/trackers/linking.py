@@ -21,7 +21,9 @@ class LinkParams(Section):
     """How detections of neighbouring frames are taken for the same object."""
 
     gate_px: float = Field(gt=0)
-    """Largest distance of a detection from where its track was going."""
+    """Largest distance of a detection from where its track was going; grows as the root of the frames since then."""
+    apart_px: float = Field(ge=0)
+    """Two tracks nearer than this are at the same object: only the one that was going there stays."""
     memory_frames: int = Field(ge=0)
     """Frames in a row that a track may go without a detection."""
     least_share: float = Field(ge=0, le=1)
@@ -85,17 +87,20 @@ def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams,
         living = [track for track in living if frame - track.detected[-1] <= params.memory_frames + 1]
         pairs = _assigned(living, xy, frame, params)
         born = [Track([frame], [xy[n]], [float(score[n])], [frame]) for n in range(len(xy)) if n not in pairs.values()]
-        for row in _alone(living, pairs) + _merged(living, pairs, xy, frame, params):
-            found = seek(living[row], frame)
-            if found is not None:
+        merged = _merged(living, pairs, xy, frame, params)
+        kept = [xy[number] for row, number in pairs.items() if row not in merged]
+        sought = {row: seek(living[row], frame) for row in merged + _alone(living, pairs)}
+        for row, found in sorted(sought.items(), key=lambda item: _surprise(living[item[0]], item[1], frame)):
+            if found and all(np.linalg.norm(found[0] - other) >= params.apart_px for other in kept):
                 living[row].add(frame, *found, detected=False)
+                kept.append(found[0])
                 pairs.pop(row, None)
         for row, number in pairs.items():
             living[row].add(frame, xy[number], float(score[number]))
         living += born
-    kept = [each for each in ended + living if len(each.detected) >= params.least_share * len(places)]
-    kept.sort(key=lambda track: (-sum(track.score), track.frames[0]))
-    return sorted((track.trajectory(len(places), params.still_px) for track in kept), key=lambda each: each.still)
+    shown = [each for each in ended + living if len(each.detected) >= params.least_share * len(places)]
+    shown.sort(key=lambda track: (-sum(track.score), track.frames[0]))
+    return sorted((track.trajectory(len(places), params.still_px) for track in shown), key=lambda each: each.still)
 
 
 def _assigned(living: list[Track], xy: Floats, frame: int, params: LinkParams) -> dict[int, int]:
@@ -103,15 +108,21 @@ def _assigned(living: list[Track], xy: Floats, frame: int, params: LinkParams) -
     if not living or not len(xy):
         return {}
     cost = np.linalg.norm(np.stack([track.expected(frame) for track in living])[:, None] - xy, axis=-1)
-    # Far beyond the gate all pairs are alike, so that one of them cannot drive a good pair apart.
-    assigned = zip(*linear_sum_assignment(np.minimum(cost, 4 * params.gate_px)), strict=True)
-    pairs = {int(row): int(number) for row, number in assigned if cost[row, number] <= params.gate_px}
+    gates = params.gate_px * np.sqrt([frame - track.frames[-1] for track in living])
+    # Beyond the gate all pairs are alike, so that one of them cannot drive a good pair apart.
+    assigned = zip(*linear_sum_assignment(np.minimum(cost, 4 * gates.max())), strict=True)
+    pairs = {int(row): int(number) for row, number in assigned if cost[row, number] <= gates[row]}
     for row, other in combinations(pairs, 2):
         exchanged = cost[row, pairs[other]] + cost[other, pairs[row]]
         if exchanged - cost[row, pairs[row]] - cost[other, pairs[other]] < params.doubt_px:
             living[row].doubts.add(frame)
             living[other].doubts.add(frame)
     return pairs
+
+
+def _surprise(track: Track, found: tuple[Floats, float] | None, frame: int) -> float:
+    """Pixels between where a track was going and where it was found."""
+    return float(np.linalg.norm(track.expected(frame) - found[0])) if found else np.inf
 
 
 def _alone(living: list[Track], pairs: dict[int, int]) -> list[int]:

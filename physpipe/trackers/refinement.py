@@ -133,8 +133,8 @@ def _profile(look: Floats, distance: NDArray[np.float64]) -> Floats:
 
 
 def _radius(profile: Floats) -> float:
-    """Distance in pixels at which the colour is half-way from the object's to its surroundings'; such that pixels of both
-    are within the profile."""
+    """Distance in pixels at which the colour is half-way from the object's to its surroundings'; pixels of both are
+    within the profile."""
     contrast = np.linalg.norm(profile - profile[-3:].mean(axis=0), axis=1)
     half = float(contrast[:4].max()) / 2
     beyond = np.flatnonzero(contrast < half)

@@ -32,20 +32,30 @@ def causality_by_coin(judge: Discriminator, xy: Tensor, weights: Tensor, generat
     return (weights * F.softplus(torch.where(heads.to(xy.device), -logits, logits))).sum()
 
 
-def motion_target(frames: Tensor, background: Tensor, stride: int, even: float) -> Tensor:
-    """(B, h, w) distribution of where (B, 3, H, W) frames differ from their clip's background.
+def motion_target(frames: Tensor, background: Tensor, stride: int) -> Tensor:
+    """(B, h, w) distribution of where (B, 3, H, W) frames differ from their clip's background."""
+    above = _standing_out(frames, background, stride)
+    return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
 
-    Squared residuals less what most of the frame shows (noise, light), so that only what stands out is left. Above 0,
-    `even` is the share of the frame's strongest motion at which motion counts half: objects of little contrast then
-    weigh nearly as much as others.
+
+def even_motion_target(frames: Tensor, background: Tensor, stride: int, even: float) -> Tensor:
+    """As `motion_target`, but objects of little contrast weigh nearly as much as others.
+
+    `even` is the share of the strongest motion in a frame, on average over the batch, at which motion counts half. A
+    frame in which nothing moves, less than half a cell in all, has a sum below 1, so that its noise teaches little.
     """
+    above = _standing_out(frames, background, stride)
+    strongest = above.flatten(1).max(1).values.mean().clamp_min(1e-12)
+    counted = above / (above + even * strongest)
+    return counted / counted.flatten(1).sum(1).clamp_min(0.5)[:, None, None]
+
+
+def _standing_out(frames: Tensor, background: Tensor, stride: int) -> Tensor:
+    """(B, h, w) squared residuals less what most of the frame shows (noise, light), squared again."""
     residual = (frames - background).square().mean(1, keepdim=True)
     pooled = F.avg_pool2d(residual, stride)[:, 0]
     floor = pooled.flatten(1).quantile(0.9, dim=1)[:, None, None]
-    above = (pooled - floor).clamp_min(0).square()
-    if even:
-        above = above / (above + even * above.flatten(1).max(1).values[:, None, None].clamp_min(1e-12))
-    return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
+    return (pooled - floor).clamp_min(0).square()
 
 
 def motion_cross_entropy(logits: Tensor, target: Tensor) -> Tensor:

@@ -105,8 +105,9 @@ class TrackNet(nn.Module):
         return loss, {"motion_nats": loss.item()}
 
     def _motion(self, batch: Moments, logits: Tensor) -> Tensor:
-        even = self.params.peaks.even if self.params.peaks else 0.0
-        return motion_cross_entropy(logits, batch.outside_mask(batch.motion(self.detector.stride, even)))
+        several, stride = self.params.peaks, self.detector.stride
+        target = batch.motion(stride) if several is None else batch.even_motion(stride, several.even)
+        return motion_cross_entropy(logits, batch.outside_mask(target))
 
     def _paper(
         self, batch: Moments, frames: Tensor, logits: Tensor, generator: torch.Generator

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from physpipe.tracknet.losses import motion_target
+from physpipe.tracknet.losses import even_motion_target, motion_target
 
 
 @dataclass(frozen=True)
@@ -19,11 +19,16 @@ class Moments:
     ignored: Tensor | None = None
     """(B, 5, h, w) heat-map cells where nothing may be found (sequential masking), or None."""
 
-    def motion(self, stride: int, even: float = 0.0) -> Tensor:
-        """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included; `even` as in
-        `motion_target`."""
-        background = self.background.repeat_interleave(self.frames.shape[1], 0)
-        return motion_target(self.frames.flatten(0, 1), background, stride, even)
+    def motion(self, stride: int) -> Tensor:
+        """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included."""
+        return motion_target(*self._frames_and_backgrounds(), stride)
+
+    def even_motion(self, stride: int, even: float) -> Tensor:
+        """As `motion`, evened out as by `even_motion_target`."""
+        return even_motion_target(*self._frames_and_backgrounds(), stride, even)
+
+    def _frames_and_backgrounds(self) -> tuple[Tensor, Tensor]:
+        return self.frames.flatten(0, 1), self.background.repeat_interleave(self.frames.shape[1], 0)
 
     def outside_mask(self, cells: Tensor) -> Tensor:
         """(B * 5, h, w) `cells`, 0 where ignored."""

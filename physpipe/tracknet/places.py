@@ -23,9 +23,8 @@ class PeakParams(Section):
     """Radius around a peak within which the mean position is taken."""
     least_mass: float = Field(gt=0, lt=1)
     """Share of the heat map that a peak must hold to be an object."""
-    even: float = Field(ge=0, le=1)
-    """Share of a frame's strongest motion at which motion counts half, so that faint objects are learned, too; 0 = as
-    it is."""
+    even: float = Field(gt=0, le=1)
+    """Share of the strongest motion at which motion counts half, so that faint objects are learned, too."""
 
 
 class Places(NamedTuple):

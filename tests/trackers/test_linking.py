@@ -5,7 +5,7 @@ import pytest
 
 from physpipe.trackers.linking import LinkParams, Track, link
 
-LINKS = LinkParams(gate_px=6, memory_frames=4, least_share=0.3, doubt_px=3, still_px=2)
+LINKS = LinkParams(gate_px=6, apart_px=2, memory_frames=4, least_share=0.3, doubt_px=3, still_px=2)
 T = 30
 
 
@@ -71,6 +71,20 @@ def test_what_shows_too_briefly_is_dropped():
     assert len(link(*detections(straight((5, 5), (1, 0)), brief), LINKS, nowhere)) == 1
 
 
+def test_two_tracks_do_not_settle_on_one_object():
+    """While the second hides for some frames the first one's place fits both looks; it stays the first one's."""
+    first, second = straight((5, 20), (1, 0)), straight((35, 22), (-1, 0))
+    seen = second.copy()
+    seen[12:18] = np.nan
+
+    def at_the_first(track: Track, frame: int) -> tuple[np.ndarray, float]:
+        return first[frame], 0.9
+
+    found = link(*detections(first, seen), LINKS.model_copy(update={"memory_frames": 12}), at_the_first)
+    for track, path in zip(found, (first, second), strict=True):
+        np.testing.assert_allclose(track.xy, path, atol=1e-5)  # the second by a straight line over the gap
+
+
 def test_what_never_moves_comes_last_however_sure():
     rng = np.random.default_rng(0)
     wobbling = straight((50, 5), (0, 0)) + rng.uniform(-1.5, 1.5, (T, 2))
@@ -106,9 +120,7 @@ def test_objects_that_touch_and_look_like_one_are_sought_apart_and_are_ambiguous
         nearest = min(truth, key=lambda k: np.linalg.norm(truth[k][frame] - expected))
         return (truth[nearest][frame], 0.5) if alike else None
 
-    found = link(
-        *detections(*seen), LinkParams(gate_px=6, memory_frames=12, least_share=0.3, doubt_px=3, still_px=2), by_look
-    )
+    found = link(*detections(*seen), LINKS.model_copy(update={"memory_frames": 12}), by_look)
     assert len(found) == 2
     assert found[0].ambiguous[near].all()
     assert not found[0].ambiguous[: np.flatnonzero(near)[0] - 3].any()
