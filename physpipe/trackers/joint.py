@@ -46,7 +46,8 @@ class PeakTracker:
             return None
         known = np.isin(track.frames, track.detected[-LOOK_FRAMES:])
         seen, xy = np.array(track.frames)[known], np.stack(track.xy)[known]
-        return Searcher(frames[seen], xy, self.refinement).near(frames[frame], track.expected(frame))
+        searcher = Searcher(frames[seen], xy, self.refinement)
+        return searcher.near(frames[frame], track.expected(frame), self.links.search_px)
 
     def detect(
         self, frames: NDArray[np.uint8], ignore: NDArray[np.bool_] | None = None

@@ -1,6 +1,6 @@
 """Detections of every frame to tracks: who is who by motion, births and deaths, doubts owned up to (ours)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
@@ -30,6 +30,8 @@ class LinkParams(Section):
     """Share of a clip's frames in which an object must be detected; what shows more briefly is dropped."""
     doubt_px: float = Field(ge=0)
     """Two tracks that would cost less than this more when exchanged are ambiguous there."""
+    search_px: int = Field(ge=1)
+    """Farthest along x and y that a track without a detection of its own is sought from where it was going."""
     still_px: float = Field(ge=0)
     """Root mean square distance from its mean place below which a track is still: more likely a mark on the ground that
     the camera's wobble moves than an object."""
@@ -62,6 +64,16 @@ class Track:
         if detected:
             self.detected.append(frame)
 
+    def go_on_as(self, other: "Track") -> None:
+        """Takes over all that `other` has, which proved to be the same object and is empty afterwards."""
+        before = [at for at, frame in enumerate(self.frames) if frame < other.frames[0]]
+        self.doubts |= other.doubts | set(range(self.detected[-1] + 1, other.frames[0] + 1))
+        self.frames = [self.frames[at] for at in before] + other.frames
+        self.xy = [self.xy[at] for at in before] + other.xy
+        self.score = [self.score[at] for at in before] + other.score
+        self.detected += other.detected
+        other.frames, other.xy, other.score, other.detected = [], [], [], []
+
     def trajectory(self, length: int, still_px: float) -> Trajectory:
         """Over all frames of the clip, straight lines over gaps: NaN before the first detection and after the last
         place."""
@@ -88,15 +100,11 @@ def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams,
         pairs = _assigned(living, xy, frame, params)
         born = [Track([frame], [xy[n]], [float(score[n])], [frame]) for n in range(len(xy)) if n not in pairs.values()]
         merged = _merged(living, pairs, xy, frame, params)
-        kept = [xy[number] for row, number in pairs.items() if row not in merged]
-        sought = {row: seek(living[row], frame) for row in merged + _alone(living, pairs)}
-        for row, found in sorted(sought.items(), key=lambda item: _surprise(living[item[0]], item[1], frame)):
-            if found and all(np.linalg.norm(found[0] - other) >= params.apart_px for other in kept):
-                living[row].add(frame, *found, detected=False)
-                kept.append(found[0])
-                pairs.pop(row, None)
+        pairs = {row: number for row, number in pairs.items() if row not in merged}
         for row, number in pairs.items():
             living[row].add(frame, xy[number], float(score[number]))
+        _seek_others(living, {row: xy[number] for row, number in pairs.items()}, frame, params, seek)
+        living = [track for track in living if track.frames]
         living += born
     shown = [each for each in ended + living if len(each.detected) >= params.least_share * len(places)]
     shown.sort(key=lambda track: (-sum(track.score), track.frames[0]))
@@ -120,24 +128,44 @@ def _assigned(living: list[Track], xy: Floats, frame: int, params: LinkParams) -
     return pairs
 
 
+def _seek_others(living: list[Track], taken: dict[int, Floats], frame: int, params: LinkParams, seek: Seek) -> None:
+    """Moves the tracks that have no place yet to where their look is found; `taken` holds the places of the others.
+
+    A place that is taken belongs to another object, unless that track began after this one was lost from sight.
+    """
+    sought = {row: seek(living[row], frame) for row in _alone(living, taken)}
+    for row, found in sorted(sought.items(), key=lambda item: _surprise(living[item[0]], item[1], frame)):
+        if found is None:
+            continue
+        rivals = [other for other, xy in taken.items() if np.linalg.norm(found[0] - xy) < params.apart_px]
+        if not rivals:
+            living[row].add(frame, *found, detected=False)
+            taken[row] = found[0]
+        for other in rivals:
+            if living[other].frames and living[other].frames[0] > living[row].detected[-1]:
+                living[row].go_on_as(living[other])
+                taken[row] = taken.pop(other)
+                break
+
+
 def _surprise(track: Track, found: tuple[Floats, float] | None, frame: int) -> float:
     """Pixels between where a track was going and where it was found."""
     return float(np.linalg.norm(track.expected(frame) - found[0])) if found else np.inf
 
 
-def _alone(living: list[Track], pairs: dict[int, int]) -> list[int]:
-    """Tracks without a detection."""
-    return [row for row in range(len(living)) if row not in pairs]
+def _alone(living: list[Track], placed: Container[int]) -> list[int]:
+    """Tracks that have no place yet."""
+    return [row for row in range(len(living)) if row not in placed]
 
 
-def _merged(living: list[Track], pairs: dict[int, int], xy: Floats, frame: int, params: LinkParams) -> list[int]:
+def _merged(living: list[Track], pairs: dict[int, int], xy: Floats, frame: int, params: LinkParams) -> set[int]:
     """Tracks whose detection may be that of a neighbour, too: two objects that touch look like one. Both are
     ambiguous."""
-    merged = []
+    merged = set()
     for row, number in pairs.items():
         for other in _alone(living, pairs):
             if np.linalg.norm(living[other].expected(frame) - xy[number]) <= params.gate_px:
-                merged.append(row)
+                merged.add(row)
                 living[row].doubts.add(frame)
                 living[other].doubts.add(frame)
-    return sorted(set(merged))
+    return merged

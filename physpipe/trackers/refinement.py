@@ -67,11 +67,13 @@ class Searcher:
         self.params = params
         self.look = _centred(frames, xy.astype(np.float32), params)[1]
 
-    def near(self, frame: NDArray[np.uint8], xy: NDArray[np.floating]) -> tuple[Floats, float] | None:
-        """(2,) place near (2,) in (H, W, 3) where it fits best, and how well; None where nothing fits."""
-        corner, search = np.rint(xy).astype(int), self.params.search_px
-        half = len(self.look.template) // 2 + search
-        offset, fit = self.look.fit(srgb_to_lab(_cut(frame[None], corner[None], half))[0], search)
+    def near(self, frame: NDArray[np.uint8], xy: NDArray[np.floating], search_px: int) -> tuple[Floats, float] | None:
+        """(2,) place in (H, W, 3), within `search_px` of (2,) along x and y, where it fits best, and how well.
+
+        None where nothing fits.
+        """
+        corner, half = np.rint(xy).astype(int), len(self.look.template) // 2 + search_px
+        offset, fit = self.look.fit(srgb_to_lab(_cut(frame[None], corner[None], half))[0], search_px)
         return (corner + offset, fit) if fit >= self.params.least_fit else None
 
 

@@ -24,7 +24,7 @@ class PeakParams(Section):
     least_mass: float = Field(gt=0, lt=1)
     """Share of the heat map that a peak must hold to be an object."""
     even: float = Field(gt=0, le=1)
-    """Share of the strongest motion at which motion counts half, so that faint objects are learned, too."""
+    """Share of the strongest motion at which a peak counts half, so that faint objects are learned, too."""
 
 
 class Places(NamedTuple):

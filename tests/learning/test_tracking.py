@@ -70,7 +70,9 @@ def params(steps: int, warm: int, rest: int = 40, several: bool = False) -> Trac
         tracking=TrackingParams(
             readout=ReadoutParams(window_px=9, batch_frames=32),
             mask=MaskParams(radius_px=8),
-            link=LinkParams(gate_px=8, apart_px=2, memory_frames=3, least_share=0.5, doubt_px=2, still_px=1),
+            link=LinkParams(
+                gate_px=8, apart_px=2, memory_frames=3, least_share=0.5, doubt_px=2, still_px=1, search_px=5
+            ),
             refine=None,
         ),
         least_motion=0.15,

@@ -5,7 +5,7 @@ import pytest
 
 from physpipe.trackers.linking import LinkParams, Track, link
 
-LINKS = LinkParams(gate_px=6, apart_px=2, memory_frames=4, least_share=0.3, doubt_px=3, still_px=2)
+LINKS = LinkParams(gate_px=6, apart_px=2, memory_frames=4, least_share=0.3, doubt_px=3, still_px=2, search_px=5)
 T = 30
 
 
@@ -83,6 +83,19 @@ def test_two_tracks_do_not_settle_on_one_object():
     found = link(*detections(first, seen), LINKS.model_copy(update={"memory_frames": 12}), at_the_first)
     for track, path in zip(found, (first, second), strict=True):
         np.testing.assert_allclose(track.xy, path, atol=1e-5)  # the second by a straight line over the gap
+
+
+def test_a_track_that_lost_sight_goes_on_as_the_one_that_began_in_its_place():
+    path = straight((5, 5), (1, 0.5))
+    path[15:] += 25  # a jump beyond the gate, by which another track begins
+
+    def by_look(track: Track, frame: int) -> tuple[np.ndarray, float] | None:
+        return (path[frame], 0.9) if frame > 20 else None
+
+    found = link(*detections(path), LINKS.model_copy(update={"memory_frames": 10}), by_look)
+    assert len(found) == 1
+    np.testing.assert_allclose(found[0].xy, path, atol=1e-5)
+    assert found[0].ambiguous[15]
 
 
 def test_what_never_moves_comes_last_however_sure():

@@ -74,8 +74,8 @@ def test_at_the_edge_of_the_frame_nothing_breaks():
 def test_an_object_is_found_again_by_its_look_and_nothing_where_it_is_not():
     frames, xy = film()
     searcher = Searcher(frames[:10], xy[:10], REFINE)
-    found = searcher.near(frames[15], xy[15] + np.array([2.0, -2.0]))
+    found = searcher.near(frames[15], xy[15] + np.array([2.0, -2.0]), 4)
     assert found is not None
     assert np.linalg.norm(found[0] - xy[15]) < 0.5  # pixels
     assert found[1] > 0.8
-    assert searcher.near(frames[15], np.array([70.0, 10.0])) is None
+    assert searcher.near(frames[15], np.array([70.0, 10.0]), 4) is None
