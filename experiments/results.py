@@ -19,8 +19,8 @@ from experiments.records import CommandError, Experiment, Result, read_results, 
 from experiments.spread import Row, over_seeds
 from experiments.tables import page
 
-RECIPES = {"sequential": "unsupervised", "joint": "unsupervised_joint"}
-"""Recipe of our tracker to the key of its rows; the second is told no number of objects."""
+RECIPES = {"joint": "unsupervised_joint", "sequential": "unsupervised"}
+"""Recipe of our tracker to the key of its rows; the first is told no number of objects."""
 JSON, PAGE, SPEED = Path("docs/results/trackers.json"), Path("docs/results.md"), Path("benchmarks/speed.json")
 FILM = Path("data/raw")
 Table = dict[str, dict[str, Row]]
@@ -54,8 +54,8 @@ def experiments(
             f"results-{name}-{recipe}-seed{seed}",
             (*tracker_only(name, seed, "simulate" in datasets[name]), *_told(recipe, name)),
         )
-        for name in names
         for recipe in RECIPES
+        for name in names
         for seed in seeds
     }
 

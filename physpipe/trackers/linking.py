@@ -25,7 +25,7 @@ class LinkParams(Section):
     apart_px: float = Field(ge=0)
     """Two tracks nearer than this are at the same object: only the one that was going there stays."""
     memory_frames: int = Field(ge=0)
-    """Frames in a row that a track may go without a detection."""
+    """Frames in a row that a track may go without a detection; never more than the detections that it has had."""
     least_share: float = Field(ge=0, le=1)
     """Share of a clip's frames in which an object must be detected; what shows more briefly is dropped."""
     doubt_px: float = Field(ge=0)
@@ -48,6 +48,10 @@ class Track:
     detected: list[int]
     """Frames of a detection; in the others the track was sought by its look."""
     doubts: set[int] = field(default_factory=set)
+
+    def lives(self, frame: int, memory_frames: int) -> bool:
+        """Whether it may still be seen at `frame`."""
+        return frame - self.detected[-1] <= min(memory_frames, len(self.detected)) + 1
 
     def expected(self, frame: int) -> Floats:
         """(2,) where it is at `frame` if it goes on as it went."""
@@ -95,8 +99,8 @@ def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams,
     living: list[Track] = []
     ended: list[Track] = []
     for frame, (xy, score) in enumerate(zip(places, scores, strict=True)):
-        ended += [track for track in living if frame - track.detected[-1] > params.memory_frames + 1]
-        living = [track for track in living if frame - track.detected[-1] <= params.memory_frames + 1]
+        ended += [track for track in living if not track.lives(frame, params.memory_frames)]
+        living = [track for track in living if track.lives(frame, params.memory_frames)]
         pairs = _assigned(living, xy, frame, params)
         born = [Track([frame], [xy[n]], [float(score[n])], [frame]) for n in range(len(xy)) if n not in pairs.values()]
         merged = _merged(living, pairs, xy, frame, params)
