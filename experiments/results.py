@@ -100,6 +100,7 @@ def main() -> None:
     """Runs what is missing, then writes what there is; exits with an error when an experiment failed."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--sets", help="some of the data sets only, a,b")
+    options.add_argument("--recipes", default=",".join(RECIPES), help="recipes of our tracker")
     options.add_argument("--seeds", default="0,1,2")
     options.add_argument("--jobs", type=int, default=1, help="experiments at once")
     options.add_argument("--collect", action="store_true", help="run nothing, write what there is")
@@ -107,7 +108,8 @@ def main() -> None:
     datasets = yaml.safe_load(Path("params.yaml").read_text())["datasets"]
     names, unrun = runnable(datasets, FILM)
     wanted = experiments(names, datasets, [int(word) for word in chosen.seeds.split(",")])
-    now = [each for key, each in wanted.items() if not chosen.sets or key[0] in chosen.sets.split(",")]
+    asked = set(chosen.sets.split(",") if chosen.sets else names), set(chosen.recipes.split(","))
+    now = [each for key, each in wanted.items() if key[0] in asked[0] and key[1] in asked[1]]
     try:
         failed = {} if chosen.collect else run_missing(now, chosen.jobs)
         results = read_results(list(wanted.values()))
