@@ -9,11 +9,14 @@ import re
 import sys
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from experiments.records import CODE, CommandError, Experiment, Runner, command, finished, note_cost
 
 POLL_S = 10.0
+PREDICTORS = "data/predictors"
+"""Folder that the report depends on, which nothing makes in an experiment that learns no predictor."""
 PATIENCE = 6
 """Polls without a worker after which DVC's queue counts as broken."""
 
@@ -40,6 +43,7 @@ def run_missing(
     missing = [each for each in wanted if each.name not in done]
     if not missing:
         return {}
+    Path(PREDICTORS).mkdir(parents=True, exist_ok=True)
     old = _clear({each.name for each in missing}, run)
     for number, each in enumerate(missing, 1):
         _say(f"queueing {number} of {len(missing)}: {each.label}")
@@ -50,6 +54,8 @@ def run_missing(
             "--queue",
             "--name",
             each.name,
+            "--copy-paths",
+            PREDICTORS,
             *(word for key in each.overrides for word in ("-S", key)),
         )
     try:

@@ -16,7 +16,6 @@ PARTS = [
     "stages",
     "experiments",
     "metrics/templates",
-    "data/predictors",
     "dvc.yaml",
     "params.yaml",
     ".dvc/config",
