@@ -1,9 +1,11 @@
 """What is queued, what is skipped, what is said of failures: against a DVC and a Git that only pretend."""
 
+from pathlib import Path
+
 import pytest
 from pretended_dvc import BASE, OLD, Pretended
 
-from experiments.queue import run_missing
+from experiments.queue import PREDICTORS, run_missing
 from experiments.records import CommandError, Experiment, read_results
 
 ONE, TWO = Experiment("one", ("x=1",)), Experiment("two", ("x=2", "y=[]"))
@@ -16,8 +18,10 @@ def run(pretended: Pretended, *wanted: Experiment) -> dict[Experiment, str]:
 def test_all_that_is_missing_is_queued_in_order_with_its_overrides():
     pretended = Pretended()
     assert run(pretended, ONE, TWO) == {}
-    head = ("dvc", "exp", "run", "--queue", "--name")
-    assert pretended.queued == [(*head, ONE.name, "-S", "x=1"), (*head, TWO.name, "-S", "x=2", "-S", "y=[]")]
+    head, folder = ("dvc", "exp", "run", "--queue", "--name"), ("--copy-paths", PREDICTORS)
+    one, two = (*head, ONE.name, *folder, "-S", "x=1"), (*head, TWO.name, *folder, "-S", "x=2", "-S", "y=[]")
+    assert pretended.queued == [one, two]
+    assert Path(PREDICTORS).is_dir()
     assert ("dvc", "queue", "start", "--jobs", "2") in pretended.said
 
 
