@@ -1,10 +1,13 @@
-# `make repro` rebuilds every result, `make test` runs every check; both set up what they need first.
+# `make repro` rebuilds every result, `make test` runs every check; `make ablation` and `make results` take hours and may
+# be stopped and started again. All set up what they need first.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export DVC_NO_ANALYTICS := 1
 
-.PHONY: setup repro test lint
+JOBS ?= 1
+
+.PHONY: setup repro test lint ablation results
 
 setup: $(VENV)/.ready
 
@@ -17,6 +20,9 @@ $(VENV)/.ready: pyproject.toml
 
 repro: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/dvc repro
+
+ablation results: setup
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m experiments.$@ --jobs $(JOBS)
 
 lint: setup
 	$(BIN)/ruff check .

@@ -1,24 +1,38 @@
-"""Times the parts that users wait for, on the data sets of the last `dvc repro`; prints a table with its machine.
+"""Times what users wait for, on the data sets of the last `dvc repro`, on one thread; prints it and keeps it.
 
-python benchmarks/speed.py bowls
+    python benchmarks/speed.py bowls bowls2
+
+Frames/s of every tracker on the test clips (reading them included, all objects), seconds of the first detector's
+training, and of finding out what `dvc repro` has to do. Writes benchmarks/speed.json, which docs/results.md
+takes the rates from.
 """
 
+import json
 import os
 import platform
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from datetime import date
 from pathlib import Path
 
+import cv2
 import torch
 
+from physpipe.baselines.template import TemplateParams
+from physpipe.baselines.zoo import BaselineParams, baseline_tracks
+from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, prepare
 from physpipe.core.params import read
+from physpipe.io import annotations, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers import detectors
 from physpipe.trackers.learned import ReadoutParams
 from physpipe.trackers.sequential import MaskParams
+
+OUT = Path(__file__).with_name("speed.json")
+SCRATCH = Path(".scratch/benchmark")
 
 
 def seconds(work: Callable[[], object]) -> float:
@@ -33,24 +47,62 @@ def stage(*words: str) -> Callable[[], object]:
     return lambda: subprocess.run([sys.executable, "-m", *words], check=True, stderr=subprocess.DEVNULL)
 
 
-def main(name: str) -> None:
-    """Prints the table for data set `name`."""
-    prepare(read("compute", ComputeParams))
+def baseline(name: str, tracker: str) -> Callable[[], object]:
+    """One of the trackers to compare with, as its stage runs it."""
     clips = ClipSet(Path("data/clips") / name)
-    frames = sum(len(clips.rows(each)) for each in clips.names("test"))
+    given = annotations.load(Path("data/annotations") / name, clips)
+    truth = tracks.load(Path("data/truth") / f"{name}.parquet")
+    params = read("baselines", BaselineParams).model_copy(update={"names": [tracker]})
+    radius_px = read(f"datasets.{name}.evaluate", BallParams).ball_radius_px
+    template = read("ground_truth", TemplateParams)
+    return lambda: baseline_tracks(clips, given, truth, params, template, radius_px)
+
+
+def unsupervised(name: str) -> Callable[[], object]:
+    """Ours, with the detectors that were learned."""
+    clips = ClipSet(Path("data/clips") / name)
     nets = detectors.load(Path("data/tracker") / name / "all" / detectors.WEIGHTS)
     tracker = detectors.together(nets, read("tracker.readout", ReadoutParams), read("tracker.mask", MaskParams))
-    out = Path(".scratch/benchmark")
-    rows = {
-        "inference, frames/s": frames
-        / seconds(lambda: [tracker.track_all(clips.frames(n)) for n in clips.names("test")]),
-        "train_tracker, s": seconds(stage("stages.train_tracker", f"data/clips/{name}", str(out / "first"))),
-        "no-op dvc repro, s": seconds(lambda: subprocess.run(["dvc", "repro", "--quiet"], check=True)),
-    }
-    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, torch {torch.__version__}")
-    for what, value in rows.items():
-        print(f"| {what} | {value:.1f} |")
+    return lambda: [tracker.track_all(clips.frames(each)) for each in clips.names("test")]
+
+
+def rates(name: str) -> dict[str, float]:
+    """Tracker to frames/s on the test clips of data set `name`."""
+    clips = ClipSet(Path("data/clips") / name)
+    frames = sum(len(clips.rows(each)) for each in clips.names("test"))
+    work = {"unsupervised": unsupervised(name)}
+    work |= {each: baseline(name, each) for each in read("baselines", BaselineParams).names}
+    return {tracker: round(frames / seconds(each), 1) for tracker, each in work.items()}
+
+
+def processor() -> str:
+    """The processor's name, where the system tells it."""
+    told = Path("/proc/cpuinfo")
+    lines = told.read_text().splitlines() if told.is_file() else []
+    models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return models[0] if models else platform.processor() or platform.machine()
+
+
+def main(names: list[str]) -> None:
+    """Measures the data sets `names`; those measured before on the same machine are kept."""
+    os.environ["PHYSPIPE_WORKERS"] = "1"
+    prepare(read("compute", ComputeParams).model_copy(update={"threads": 1}))
+    cv2.setNumThreads(1)
+    machine = f"{processor()}, torch {torch.__version__}"
+    kept = json.loads(OUT.read_text()) if OUT.is_file() else {}
+    table = kept if kept.get("machine") == machine else {"machine": machine, "rates": {}, "training_s": {}}
+    table |= {"date": date.today().isoformat()}
+    for name in names:
+        table["rates"][name] = rates(name)
+        training = stage("stages.train_tracker", f"data/clips/{name}", str(SCRATCH / name))
+        table["training_s"][name] = round(seconds(training), 1)
+        for what, value in table["rates"][name].items():
+            print(f"| {name} | {what} | {value:.0f} frames/s |")
+        print(f"| {name} | training | {table['training_s'][name]:.0f} s |")
+    table["status_s"] = round(seconds(lambda: subprocess.run(["dvc", "status", "--quiet"])), 1)
+    print(f"| dvc status | {table['status_s']} s |\n{machine}")
+    OUT.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1:])

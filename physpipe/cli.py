@@ -15,6 +15,7 @@ from physpipe.ingest.dataset import IngestParams
 from physpipe.io import adding, params_file
 from physpipe.io.annotations import REFERENCE, TEMPLATES
 from physpipe.io.atomic import replacing
+from physpipe.io.split_file import SPLIT_FILE
 
 TEMPLATE = "pendulum"
 EXAMPLE = "example: physpipe add marbles ~/film --source-fps 240 --fps 80 --crop 420,0,1080,1080 --objects 2"
@@ -44,11 +45,14 @@ def add(words: argparse.Namespace) -> None:
         temporary.write_text(after)
     had = name in yaml.safe_load(before)["datasets"]
     section = "kept as it was" if had else f"copied from `{TEMPLATE}`: look through its other values"
-    print(f"{len(found)} recordings in {raw}. Section `datasets.{name}` of {PARAMS} {section}.\nNext:")
+    print(f"{len(found)} recordings in {raw}. Section `datasets.{name}` of {PARAMS} {section}.")
+    told = (raw / SPLIT_FILE).exists()
+    shares = f"shares of `datasets.{name}.ingest.split`, whatever the folders are called; a {SPLIT_FILE} would decide"
+    print(f"Train, valid and test: {raw / SPLIT_FILE if told else shares}.\nNext:")
     print(f"  dvc add {raw}")
     alone = f"dvc exp run -S 'run.datasets=[{name}]' -S 'run.simulated=[]' -S 'run.supervised=[]'"
     print("  dvc repro" if words.run else f"  {alone}")
-    if not (annotations / REFERENCE).exists():
+    if not (annotations / REFERENCE).exists() and not (words.folder / TEMPLATES).exists():
         print(f"To have errors measured, put boxes into {annotations / TEMPLATES} (clip names: data/clips/{name}).")
 
 

@@ -2,22 +2,24 @@
 
 from pathlib import Path
 
+from physpipe.baselines.running import baseline_tracks
+from physpipe.baselines.template import TemplateParams
+from physpipe.baselines.zoo import BaselineParams, Settings, known_flows
 from physpipe.core.ball import BallParams
 from physpipe.core.command import run
 from physpipe.core.params import read
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.trackers.baselines import BaselineParams, baseline_tracks
-from physpipe.trackers.template import TemplateParams
 
 
 def main(name: str, clips: Path, annotated: Path, truth: Path, out: Path) -> None:
     """Writes a folder with a track table for each baseline."""
     params, template = read("baselines", BaselineParams), read("ground_truth", TemplateParams)
-    ball = read(f"datasets.{name}.evaluate", BallParams)
+    radius_px = read(f"datasets.{name}.evaluate", BallParams).ball_radius_px
     film = ClipSet(clips)
     given = annotations.load(annotated, film)
-    tables = baseline_tracks(film, given, tracks.load(truth), params, template, ball.ball_radius_px)
+    settings = Settings(params, template, radius_px, known_flows(params))
+    tables = baseline_tracks(film, given, tracks.load(truth), settings)
     tracks.save_folder(out, tables, "baseline_tracks", film)
 
 

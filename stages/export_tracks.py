@@ -8,16 +8,18 @@ from physpipe.core.params import read
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers import detectors
-from physpipe.trackers.learned import ReadoutParams
-from physpipe.trackers.sequential import MaskParams
+from physpipe.trackers.tables import ObjectsParams, track_tables
 
 
-def main(clips: Path, trained: Path, out: Path) -> None:
-    """Reads T1 ... TK from the folder `trained`; writes THE track table to `out`."""
-    readout, mask = read("tracker.readout", ReadoutParams), read("tracker.mask", MaskParams)
+def main(name: str, clips: Path, trained: Path, out: Path, unrefined: Path) -> None:
+    """Reads T1 ... TK from the folder `trained`; writes THE track table to `out`, and as it was before refinement."""
+    tracking = read("tracker.tracking", detectors.TrackingParams)
+    objects = read(f"datasets.{name}.motion", ObjectsParams)
     prepare(read("compute", ComputeParams))
-    tracker = detectors.together(detectors.load(trained / detectors.WEIGHTS), readout, mask)
-    tracks.save(out, detectors.track_table(ClipSet(clips), tracker), "physpipe unsupervised", ClipSet(clips))
+    film, nets = ClipSet(clips), detectors.load(trained / detectors.WEIGHTS)
+    after, before = track_tables(film, detectors.together(nets, tracking), objects, tracking.refine)
+    tracks.save(out, after, "physpipe unsupervised", film)
+    tracks.save(unrefined, before, "physpipe unsupervised, before refinement", film)
 
 
 if __name__ == "__main__":

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
+from physpipe.baselines.ground_truth import ground_truth
+from physpipe.baselines.template import TemplateParams
 from physpipe.core.command import run
 from physpipe.core.params import read
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.trackers.ground_truth import ground_truth
-from physpipe.trackers.template import TemplateParams
 
 
 def main(name: str, clips: Path, annotated: Path, out: Path) -> None:

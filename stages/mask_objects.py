@@ -8,8 +8,9 @@ from physpipe.core.params import read
 from physpipe.io.checkpoints import forget, scratch
 from physpipe.io.clips import ClipSet
 from physpipe.learning.lessons import save_all
-from physpipe.learning.tracking import ObjectsParams, TrackerParams, learn_others
+from physpipe.learning.tracking import TrackerParams, learn_others
 from physpipe.trackers import detectors
+from physpipe.trackers.tables import ObjectsParams
 
 
 def main(name: str, clips: Path, first: Path, out: Path) -> None:
@@ -19,8 +20,8 @@ def main(name: str, clips: Path, first: Path, out: Path) -> None:
     prepare(compute)
     folder = scratch("mask_objects", [params, compute, objects], [clips, first])
     net = detectors.load(first / detectors.WEIGHTS)[0]
-    others = learn_others(ClipSet(clips), net, objects.objects, params, compute, folder)
-    save_all(out, ClipSet(clips), first, others, params.lock)
+    others = learn_others(ClipSet(clips), net, objects, params, compute, folder)
+    save_all(out, ClipSet(clips), first, others, params)
     forget(folder)
 
 

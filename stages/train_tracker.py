@@ -17,7 +17,7 @@ def main(clips: Path, out: Path) -> None:
     prepare(compute)
     folder = scratch("train_tracker", [params, compute], [clips])
     learned = learn_first(ClipSet(clips), params, compute, folder)
-    save_first(out, ClipSet(clips), learned, params.lock)
+    save_first(out, ClipSet(clips), learned, params)
     forget(folder)
 
 

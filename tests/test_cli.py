@@ -130,6 +130,66 @@ def test_reference_positions_need_their_columns(folder: Path, monkeypatch: pytes
     assert not Path("data/raw/rink").exists()
 
 
+@pytest.fixture
+def published(folder: Path) -> Path:
+    """A set as others publish theirs: folders of videos, a split file, annotations as CSV."""
+    film = folder.parent / "set"
+    for name in ("PoolR/train/1.mp4", "PoolR/test/1.mp4", "PoolR/list.txt"):
+        (film / name).parent.mkdir(parents=True, exist_ok=True)
+        (film / name).write_text(name)
+    (film / "splits.csv").write_text("recording,split,by\nPoolR/train/1,train,us\nPoolR/test/1.mp4,test,us\n")
+    (film / "reference.csv").write_text("source,object,frame,x,y,tag\nPoolR/test/1.mp4,0,0,3.5,4,hand\n")
+    (film / "templates.csv").write_text("clip,object,frame,x,y,w,h\nPoolR-test-1_00,0,0,1,2,9,9\n")
+    return film
+
+
+def test_a_published_set_comes_with_its_split_and_its_annotations_stay_away_from_the_film(
+    published: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    add(monkeypatch, "pool", published)
+    raw, said = Path("data/raw/pool"), Path("data/annotations/pool")
+    copied = sorted(path.relative_to(raw).as_posix() for path in raw.rglob("*") if path.is_file())
+    assert copied == ["PoolR/test/1.mp4", "PoolR/train/1.mp4", "splits.csv"]
+    assert (raw / "PoolR/test/1.mp4").read_text() == "PoolR/test/1.mp4"
+    assert (raw / "splits.csv").read_bytes() == (published / "splits.csv").read_bytes()
+    assert sorted(path.name for path in said.iterdir()) == ["corrections.csv", "reference.csv", "templates.csv"]
+    for name in ("reference.csv", "templates.csv"):
+        assert (said / name).read_bytes() == (published / name).read_bytes()
+    out = capsys.readouterr().out
+    assert "Train, valid and test: data/raw/pool/splits.csv." in out
+    assert "put boxes into" not in out
+
+
+def test_positions_beside_nested_recordings_go_by_their_paths(published: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (published / "reference.csv").unlink()
+    for number, place in enumerate(("test", "train")):
+        (published / "PoolR" / place / "1.ref.csv").write_text(f"frame,x,y\n0,{number},5\n")
+    add(monkeypatch, "pool", published)
+    reference = pd.read_csv("data/annotations/pool/reference.csv")
+    assert reference.to_numpy().tolist() == [["PoolR/test/1.mp4", 0, 0, 0, 5], ["PoolR/train/1.mp4", 0, 0, 1, 5]]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        (
+            "splits.csv",
+            "recording,split\nPoolR/train/2,train\n",
+            r"splits.csv: \n  line 2: no recording `PoolR/train/2`",
+        ),
+        ("reference.csv", "source,frame,x,y\n", r"reference.csv: lacks column\(s\) object"),
+        ("PoolR/test/1.ref.csv", "frame,x,y\n0,1,2\n", "reference.csv gives reference positions too"),
+    ],
+)
+def test_a_set_with_a_bad_table_is_not_begun(
+    published: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str, said: str
+) -> None:
+    (published / name).write_text(text)
+    with pytest.raises(SystemExit, match=said):
+        add(monkeypatch, "pool", published)
+    assert [path.name for path in Path().iterdir()] == ["params.yaml"]
+
+
 def test_help_shows_an_example(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         add(monkeypatch, "--help")

@@ -5,17 +5,22 @@ from pathlib import Path
 import pytest
 import torch
 import yaml
+from dvc.utils.hydra import apply_overrides
 
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
 from physpipe.core.params import read, read_value
 from physpipe.core.prediction import PredictParams
+from physpipe.flownet.network import CorrFlow
 from physpipe.ingest.dataset import IngestParams
+from physpipe.learning.flow import FlowParams
+from physpipe.learning.flow_film import as_batch, draw_pairs
 from physpipe.learning.tracking import ObjectsParams, TrackerParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
-from physpipe.scenes.worlds import WorldParams
-from physpipe.tracknet.model import Moments, TrackNet
+from physpipe.scenes.presets import PresetsParams, SimulateParams
+from physpipe.tracknet.model import TrackNet
+from physpipe.tracknet.moments import Moments
 
 PATH = Path(__file__).parents[1] / "params.yaml"
 PARAMS = yaml.safe_load(PATH.read_text())
@@ -25,11 +30,31 @@ RECIPES = list(PARAMS["tracker"]["recipes"])
 @pytest.mark.parametrize("name", list(PARAMS["datasets"]))
 def test_every_data_set_has_all_its_sections(name):
     kinds = {"ingest": IngestParams, "motion": ObjectsParams, "evaluate": BallParams, "predict": PredictParams}
-    if name in read_value("run.simulated", PATH):
-        kinds["simulate"] = WorldParams
+    if "simulate" in PARAMS["datasets"][name]:
+        kinds["simulate"] = SimulateParams
     assert set(PARAMS["datasets"][name]) == set(kinds)
     for section, kind in kinds.items():
         read(f"datasets.{name}.{section}", kind, PATH)
+
+
+@pytest.mark.parametrize("name", [name for name in PARAMS["datasets"] if "simulate" in PARAMS["datasets"][name]])
+def test_every_simulated_set_names_presets_that_exist_in_each_of_its_sizes(name):
+    simulated = read(f"datasets.{name}.simulate", SimulateParams, PATH)
+    for size in simulated.sizes:
+        world = simulated.model_copy(update={"size": size}).world(read("presets", PresetsParams, PATH), name)
+        assert world.balls.count == read(f"datasets.{name}.motion", ObjectsParams, PATH).objects
+
+
+def test_every_preset_is_used():
+    named = [each["simulate"] for each in PARAMS["datasets"].values() if "simulate" in each]
+    for plural, key in {"terrains": "terrain", "palettes": "palette", "looks": "look", "cameras": "camera"}.items():
+        assert set(PARAMS["presets"][plural]) == {each[key] for each in named}
+    assert set(PARAMS["presets"]["physics"]) == {each["physics"] for each in named}
+
+
+def test_simulated_sets_are_exactly_those_with_a_simulate_section():
+    simulated = set(read_value("run.simulated", PATH))
+    assert {name for name in read_value("run.datasets", PATH) if "simulate" in PARAMS["datasets"][name]} == simulated
 
 
 def test_what_runs_by_default_needs_no_film_of_the_user():
@@ -52,6 +77,16 @@ def test_every_recipe_of_the_tracker_takes_a_step(recipe):
     assert {"order_nats", "entropy_nats", "siamese_px2"} <= set(parts)
 
 
+@pytest.mark.parametrize("name", list(PARAMS["flow"]))
+def test_every_flow_network_is_small_and_takes_a_step(name):
+    params = read(f"flow.{name}", FlowParams, PATH)
+    net = CorrFlow(params.network)
+    assert sum(each.numel() for each in net.parameters()) <= 1_000_000
+    loss, _ = net.loss(as_batch(draw_pairs(params.pairs, 1, torch_generator(0))), torch_generator(1))
+    loss.backward()
+    assert torch.isfinite(loss)
+
+
 def test_the_plain_recipe_is_the_paper_s():
     net = read("tracker", TrackerParams, PATH).recipes["paper"].net
     assert (net.losses.causality, net.losses.entropy, net.losses.equivariance) == (1, 0.01, 0.001)
@@ -63,4 +98,15 @@ def test_the_plain_recipe_is_the_paper_s():
 def test_the_file_is_in_block_style_so_that_an_override_changes_one_line():
     lines = PATH.read_text().splitlines()
     assert [line for line in lines if len(line) > 80] == []
-    assert [line for line in lines if line.split("#")[0].rstrip().endswith(("}", "]"))] == []
+    values = [line.split("#")[0].rstrip() for line in lines]
+    assert [each for each in values if each.endswith(("}", "]")) and not each.endswith("[]")] == []  # [] has no block
+
+
+@pytest.mark.parametrize("emptied", ["simulated", "learned", "supervised"])
+def test_a_list_of_what_runs_can_be_emptied_by_an_override(emptied, tmp_path):
+    copy = tmp_path / "params.yaml"
+    copy.write_text(PATH.read_text())
+    apply_overrides(copy, [f"run.{emptied}=[]", "run.datasets=[bowls]"])
+    expected = {**PARAMS, "run": {**PARAMS["run"], emptied: [], "datasets": ["bowls"]}}
+    assert yaml.safe_load(copy.read_text()) == expected
+    assert copy.read_text().count("#") == PATH.read_text().count("#")

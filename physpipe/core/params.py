@@ -56,7 +56,7 @@ def _find(section: str, path: Path) -> Any:
     for key in section.split("."):
         if not isinstance(node, dict) or key not in node:
             known = list(node) if isinstance(node, dict) else []
-            raise InputError(path, f"no key `{'.'.join([*done, key])}`{_nearest(key, known)}", "add the key")
+            raise InputError(path, f"no key `{'.'.join([*done, key])}`{nearest(key, known)}", "add the key")
         node = node[key]
         done.append(key)
     return node
@@ -68,7 +68,7 @@ def _describe(error: ValidationError, section: str, kind: type[Section]) -> str:
         key = ".".join([section, *map(str, problem["loc"])])
         hint = ""
         if problem["type"] == "extra_forbidden":
-            hint = _nearest(str(problem["loc"][-1]), list(_fields_at(kind, problem["loc"][:-1])))
+            hint = nearest(str(problem["loc"][-1]), list(_fields_at(kind, problem["loc"][:-1])))
         parts.append(f"`{key}`: {problem['msg']}, got {problem['input']!r}{hint}")
     return "; ".join(parts)
 
@@ -83,7 +83,8 @@ def _fields_at(kind: type[BaseModel], location: tuple[int | str, ...]) -> list[s
     return list(kind.model_fields)
 
 
-def _nearest(word: str, known: list[str]) -> str:
+def nearest(word: str, known: list[str]) -> str:
+    """The hint " (did you mean `...`?)" for a misspelt `word`, empty where none of `known` is like it."""
     close = difflib.get_close_matches(word, known, n=1)
     return f" (did you mean `{close[0]}`?)" if close else ""
 

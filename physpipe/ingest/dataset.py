@@ -1,6 +1,5 @@
 """A folder of recordings to a set of clips."""
 
-import hashlib
 import re
 import sys
 from collections import Counter
@@ -11,15 +10,14 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from pydantic import Field, model_validator
 
 from physpipe.core.errors import DiskFullError, InputError
 from physpipe.core.parallel import in_parallel
-from physpipe.core.params import Section
 from physpipe.core.scratch import scratch_root
 from physpipe.ingest import recording
-from physpipe.io import packed, video
-from physpipe.io.clips import SPLITS, Clip, Split
+from physpipe.ingest.splits import SplitParams, Splits
+from physpipe.io import folders, packed, split_file, video
+from physpipe.io.clips import Clip
 
 RECORDINGS = [
     "source",
@@ -35,26 +33,11 @@ RECORDINGS = [
 ]
 
 
-class SplitParams(Section):
-    """Shares of the clips, by a hash of each clip's name: adding a recording moves no other clip."""
-
-    valid: float = Field(ge=0, le=1)
-    """Share that chooses when to stop learning."""
-    test: float = Field(ge=0, le=1)
-    """Share that nothing learns from."""
-
-    @model_validator(mode="after")
-    def _shares_add_up(self) -> "SplitParams":
-        if self.valid + self.test > 1:
-            raise ValueError("valid + test exceeds 1")
-        return self
-
-
 class IngestParams(recording.ConvertParams):
     """Section `datasets.<name>.ingest` of params.yaml."""
 
     split: SplitParams
-    """Shares of validation and test; the rest is for training."""
+    """Shares of validation and test, the rest being for training, where the set brings no split file."""
     allow_unreadable: bool
     """Go on without the recordings that give no clip, instead of failing after naming them all."""
 
@@ -67,10 +50,12 @@ def ingest(name: str, raw: Path, params: IngestParams) -> tuple[Iterator[Clip], 
     """The clips of the recordings in `raw`, one at a time, and a table with a row for each recording.
 
     A recording is decoded only when its bytes, the params or this code changed; its pictures stay in scratch.
-    Raises InputError naming every recording that gives no clip (unless allowed), and for an empty split.
+    Raises InputError naming every recording that gives no clip (unless allowed), or every bad line of the split file,
+    and for an empty split.
     """
-    found = video.recordings(raw)
-    _refuse_shared_names(found)
+    found = folders.recordings(raw)
+    _refuse_shared_names(raw, found)
+    splits = Splits(params.split, split_file.read(raw, found))
     store = scratch_root() / "ingest" / name
     work = partial(_converted, store=store, params=params.conversion())
     results = dict(zip(found, in_parallel(work, found, f"ingest {name}"), strict=True))
@@ -81,15 +66,15 @@ def ingest(name: str, raw: Path, params: IngestParams) -> tuple[Iterator[Clip], 
         mend = "remove or mend them, or set `allow_unreadable: true` to go on without them"
         raise InputError(raw, f"{len(bad)} of {len(found)} recordings give no clip:{listed}\n", mend)
     packed.prune(store, entries.values())
-    _refuse_empty_splits(raw, Counter(split_of(clip, params.split) for clip in _names(entries)), params.split)
-    table = pd.DataFrame([_row(path, result) for path, result in results.items()])
+    splits.refuse_empty(raw, Counter(splits.of(source, clip) for source, clip in _names(raw, entries)))
+    table = pd.DataFrame([_row(folders.source(path, raw), result) for path, result in results.items()])
     _tell(table)
-    return _clips(entries, params.split), table[RECORDINGS]
+    return _clips(raw, entries, splits), table[RECORDINGS]
 
 
 def _converted(path: Path, store: Path, params: recording.ConvertParams) -> Path | InputError:
     """The entry with the converted recording, or what is wrong with the recording."""
-    code = [*Path(__file__).parent.glob("*.py"), Path(video.__file__), Path(packed.__file__)]
+    code = [*Path(__file__).parent.glob("*.py"), *map(Path, (folders.__file__, packed.__file__, video.__file__))]
     entry = store / packed.fingerprint(path, params, code)
     try:
         if not entry.exists():
@@ -101,22 +86,23 @@ def _converted(path: Path, store: Path, params: recording.ConvertParams) -> Path
     return entry
 
 
-def _names(entries: dict[Path, Path]) -> list[str]:
-    return [
-        clip_name(path, part) for path, entry in entries.items() for part in packed.Packed(entry).rows["part"].unique()
-    ]
-
-
-def _clips(entries: dict[Path, Path], split: SplitParams) -> Iterator[Clip]:
+def _names(raw: Path, entries: dict[Path, Path]) -> Iterator[tuple[str, str]]:
+    """Source and name of every clip."""
     for path, folder in entries.items():
-        entry = packed.Packed(folder)
+        for part in packed.Packed(folder).rows["part"].unique():
+            yield folders.source(path, raw), clip_name(folders.stem(path, raw), part)
+
+
+def _clips(raw: Path, entries: dict[Path, Path], splits: Splits) -> Iterator[Clip]:
+    for path, folder in entries.items():
+        entry, source = packed.Packed(folder), folders.source(path, raw)
         for part, rows in entry.rows.groupby("part"):
-            name = clip_name(path, int(part))
+            name = clip_name(folders.stem(path, raw), int(part))
             target_s = rows["target_s"].to_numpy()
             yield Clip(
                 name=name,
-                split=split_of(name, split),
-                source=path.name,
+                split=splits.of(source, name),
+                source=source,
                 geometry=entry.geometry,
                 frames=entry.pictures[rows["picture"].to_numpy()],
                 times_s=target_s - target_s[0],
@@ -126,35 +112,19 @@ def _clips(entries: dict[Path, Path], split: SplitParams) -> Iterator[Clip]:
             )
 
 
-def clip_name(path: Path, part: int) -> str:
-    """`<stem>_<part>` in characters that every file system takes."""
-    stem = path.name if path.is_dir() else path.stem
+def clip_name(stem: str, part: int) -> str:
+    """`<stem>_<part>`, folders and all, in characters that every file system takes."""
     return f"{re.sub(r'[^A-Za-z0-9_-]+', '-', stem)}_{part:02d}"
 
 
-def split_of(clip: str, shares: SplitParams) -> Split:
-    """The split of a clip, from its name alone."""
-    place = int.from_bytes(hashlib.sha256(clip.encode()).digest()[:8], "big") / 2**64
-    if place < shares.valid:
-        return "valid"
-    return "test" if place < shares.valid + shares.test else "train"
-
-
-def _refuse_shared_names(found: list[Path]) -> None:
+def _refuse_shared_names(raw: Path, found: list[Path]) -> None:
     first: dict[str, Path] = {}
     for path in found:
-        twin = first.setdefault(clip_name(path, 0).casefold(), path)
+        twin = first.setdefault(clip_name(folders.stem(path, raw), 0).casefold(), path)
         if twin != path:
-            raise InputError(path, f"its clips would be named as those of {twin.name}", "rename one of the two")
-
-
-def _refuse_empty_splits(raw: Path, clips: Counter[Split], shares: SplitParams) -> None:
-    wanted = {"train": 1 - shares.valid - shares.test, "valid": shares.valid, "test": shares.test}
-    for split in SPLITS:
-        if wanted[split] > 0 and not clips[split]:
-            counts = ", ".join(f"{each} {clips[each]}" for each in SPLITS)
-            mend = "add recordings, lower `clip_frames`, raise the share, or set it to 0"
-            raise InputError(raw, f"no clip falls into the split `{split}` ({counts})", mend)
+            raise InputError(
+                path, f"its clips would be named as those of {folders.source(twin, raw)}", "rename one of the two"
+            )
 
 
 def _tell(table: pd.DataFrame) -> None:
@@ -165,13 +135,13 @@ def _tell(table: pd.DataFrame) -> None:
     print(f"{len(table)} recordings: {', '.join(sums)}", file=sys.stderr)
 
 
-def _row(path: Path, result: Path | InputError) -> dict[str, Any]:
+def _row(source: str, result: Path | InputError) -> dict[str, Any]:
     """The recording's row of recordings.csv."""
     if isinstance(result, InputError):
-        return {"source": path.name, "kept": 0, "clips": 0, "warnings": result.reason}
+        return {"source": source, "kept": 0, "clips": 0, "warnings": result.reason}
     entry = packed.Packed(result)
     return {
-        "source": path.name,
+        "source": source,
         **entry.summary,
         "kept": len(entry.rows),
         "clips": entry.rows["part"].nunique(),

@@ -1,4 +1,4 @@
-"""New film into the project: recordings copied, reference positions converted."""
+"""New film into the project: recordings, and what is known about them, each to its place."""
 
 import shutil
 from collections.abc import Iterable
@@ -7,46 +7,58 @@ from pathlib import Path
 import pandas as pd
 
 from physpipe.core.errors import InputError
-from physpipe.io import results, video
+from physpipe.io import folders, handwritten, results, split_file
 from physpipe.io.annotations import COLUMNS, CORRECTIONS, REFERENCE, TEMPLATES
 from physpipe.io.atomic import replacing_folder
 
+POSITIONS = ["frame", "x", "y"]
+
 
 def copy_film(folder: Path, raw: Path, annotations: Path) -> list[Path]:
-    """Copies the recordings of `folder` to `raw` and starts the tables of `annotations`; returns the recordings.
+    """Copies the recordings of `folder` and its split file to `raw`, its tables to `annotations`; returns the former.
 
-    Reference positions in `<stem>.ref.csv` beside a recording (frame in decode order, x, y in source pixels) become
-    reference.csv. Raises InputError when there is nothing to copy, a table lacks a column, or a target exists.
+    Film keeps its folders. Tables of annotations go where ingest does not look; templates and corrections that are
+    not given are started. Reference positions in `<stem>.ref.csv` beside a recording (frame in decode order, x, y in
+    source pixels) become reference.csv. Raises InputError when there is nothing to copy, a table lacks a column, the
+    split file has a bad line, references come in both ways, or a target exists.
     """
-    found = video.recordings(folder)
+    found = folders.recordings(folder)
     for target in (raw, annotations):
         if target.exists():
             raise InputError(target, "exists already", "choose another name, or remove it first")
-    references = [_reference(path) for path in found if _reference_path(path).is_file()]
+    split_file.read(folder, found)
+    given = [folder / name for name in COLUMNS if (folder / name).is_file()]
+    for path in given:
+        handwritten.rows(path, COLUMNS[path.name])
+    references = _references(folder, found)
     with replacing_folder(annotations) as tables, replacing_folder(raw) as film:
         for name in (TEMPLATES, CORRECTIONS):
             results.save_csv(tables / name, pd.DataFrame(columns=COLUMNS[name]))
         if references:
             results.save_csv(tables / REFERENCE, pd.concat(references))
-        _copy(found, film)
+        for path in given:
+            shutil.copyfile(path, tables / path.name)
+        _copy(folder, found, film)
     return found
 
 
-def _copy(found: Iterable[Path], film: Path) -> None:
+def _copy(folder: Path, found: Iterable[Path], film: Path) -> None:
+    files = [file for path in found for file in (folders.images(path) if path.is_dir() else [path])]
+    for file in [*files, *folder.glob(split_file.SPLIT_FILE)]:
+        target = film / file.relative_to(folder)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(file, target)
+
+
+def _references(folder: Path, found: Iterable[Path]) -> list[pd.DataFrame]:
+    """Rows of reference.csv from every `<stem>.ref.csv`."""
+    references = []
     for path in found:
-        if path.is_dir():
-            (film / path.name).mkdir()
-        for file in video.images(path) if path.is_dir() else [path]:
-            shutil.copyfile(file, film / file.relative_to(path.parent))
-
-
-def _reference_path(path: Path) -> Path:
-    return path.with_name(f"{path.name if path.is_dir() else path.stem}.ref.csv")
-
-
-def _reference(path: Path) -> pd.DataFrame:
-    table = pd.read_csv(_reference_path(path))
-    missing = [name for name in ("frame", "x", "y") if name not in table]
-    if missing:
-        raise InputError(_reference_path(path), f"lacks column(s) {', '.join(missing)}", "begin it with frame,x,y")
-    return table.assign(source=path.name, object=0)[COLUMNS[REFERENCE]]
+        beside = path.with_name(f"{path.name if path.is_dir() else path.stem}.ref.csv")
+        if not beside.is_file():
+            continue
+        if (folder / REFERENCE).is_file():
+            raise InputError(beside, f"{folder / REFERENCE} gives reference positions too", "leave one of the two")
+        rows = handwritten.rows(beside, POSITIONS).assign(source=folders.source(path, folder), object=0)
+        references.append(rows[COLUMNS[REFERENCE]])
+    return references

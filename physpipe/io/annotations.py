@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from physpipe.core.errors import InputError
+from physpipe.io import handwritten
 from physpipe.io.clips import ClipSet
 
 TEMPLATES, CORRECTIONS, REFERENCE = "templates.csv", "corrections.csv", "reference.csv"
@@ -83,11 +84,7 @@ def _read(path: Path, clips: ClipSet, find_faults: Callable[[pd.DataFrame, ClipS
     columns = COLUMNS[path.name]
     if not path.is_file():
         return pd.DataFrame(columns=columns)
-    words = pd.read_csv(path, dtype=str, keep_default_na=False, skip_blank_lines=False, skipinitialspace=True)
-    missing = [name for name in columns if name not in words]
-    if missing:
-        raise InputError(path, f"lacks column(s) {', '.join(missing)}", f"begin it with {','.join(columns)}")
-    words = words[(words != "").any(axis=1)]
+    words = handwritten.rows(path, columns)
     table = words.copy()
     for name in columns[1:]:
         plain = words[name].str.lower().map(VISIBLE) if name == "visible" else words[name]
@@ -100,7 +97,7 @@ def _refuse(path: Path, faults: Faults) -> None:
     """Raises one InputError for all faults, with the numbers of their lines in the file."""
     said = []
     for fault, bad in faults.items():
-        lines = [str(index + 2) for index in bad.index[bad]]
+        lines = [str(line) for line in bad.index[bad]]
         if lines:
             more = f" and {len(lines) - 20} more" if len(lines) > 20 else ""
             said.append(f"{fault}: line {', '.join(lines[:20])}{more}")

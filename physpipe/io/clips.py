@@ -29,7 +29,7 @@ class Clip:
     name: str
     split: Split
     source: str
-    """File (or image folder) name of the recording."""
+    """Path of the recording (a file, or a folder of images) inside the folder of the set's film."""
     geometry: Geometry
     frames: NDArray[np.uint8]
     """(T, H, W, 3) RGB; a frame that could not be decoded repeats the one before it and says so in `status`."""

@@ -16,7 +16,7 @@ from pydantic import BaseModel
 
 from physpipe.core.geometry import Geometry
 from physpipe.io.atomic import replacing_folder
-from physpipe.io.video import images
+from physpipe.io.folders import images
 
 PICTURES, ROWS, SUMMARY = "pictures.rgb", "rows.parquet", "summary.json"
 

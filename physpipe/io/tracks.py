@@ -14,7 +14,9 @@ from physpipe.io.clips import ClipSet
 
 SCHEMA_VERSION = 1
 KEY = ["clip", "object", "frame"]
-STATUSES = ("tracked", "lost", "corrected", "reference")
+AMBIGUOUS = "ambiguous"
+"""Seen, but perhaps another object than the number says: objects that cross or touch."""
+STATUSES = ("tracked", "lost", "corrected", "reference", AMBIGUOUS)
 DTYPES = {
     "clip": "str",
     "object": "int16",
@@ -38,9 +40,12 @@ def rows(
     times_s: NDArray[np.float64],
     xy: NDArray[np.floating],
     score: NDArray[np.floating],
-    status: str = "tracked",
+    status: str | NDArray[np.str_] = "tracked",
 ) -> pd.DataFrame:
-    """Rows of one clip from `xy` (T, K, 2) pixels (NaN where lost) and `score` (T, K) in [0, 1]."""
+    """Rows of one clip from `xy` (T, K, 2) pixels (NaN where lost), `score` (T, K) in [0, 1], `status` or (T, K) of it.
+
+    A lost object has the status `lost` whatever is given for it.
+    """
     T, K = xy.shape[:2]
     found = np.isfinite(xy).all(axis=2)
     columns = {
@@ -70,6 +75,15 @@ def positions(table: pd.DataFrame, clip: str) -> NDArray[np.float32]:
 def by_clip(table: pd.DataFrame) -> dict[str, NDArray[np.float32]]:
     """Clip name to (T, K, 2) pixels, for all clips of the table at once."""
     return {str(name): positions(mine, str(name)) for name, mine in table.groupby("clip", sort=True)}
+
+
+def ambiguous(table: pd.DataFrame) -> dict[str, NDArray[np.bool_]]:
+    """Clip name to (T, K), true where the status says that an object may have been mistaken for another."""
+    ordered = table.assign(flag=table["status"] == AMBIGUOUS).sort_values(["clip", "frame", "object"])
+    return {
+        str(name): mine["flag"].to_numpy().reshape(-1, mine["object"].nunique())
+        for name, mine in ordered.groupby("clip", sort=True)
+    }
 
 
 def object_count(path: Path, table: pd.DataFrame) -> int:

@@ -2,7 +2,6 @@
 
 import heapq
 import math
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,10 +13,9 @@ from av.video.stream import VideoStream
 from numpy.typing import NDArray
 
 from physpipe.core.errors import InputError
+from physpipe.io.folders import images
 
-IMAGE_SUFFIXES = {".bmp", ".jpeg", ".jpg", ".png", ".tif", ".tiff", ".webp"}
 LONGEST_GAP_S = 3600.0  # a timestamp that jumps further is broken
-COMPANION_SUFFIXES = {"", ".csv", ".json", ".md", ".txt", ".yaml", ".yml"}  # licences, notes, reference positions
 
 
 @dataclass(frozen=True)
@@ -138,28 +136,3 @@ def rgb(image: av.VideoFrame) -> NDArray[np.uint8]:
     else:
         pixels = image.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
     return np.rot90(pixels, round(image.rotation / 90)) if image.rotation else pixels
-
-
-def recordings(folder: Path) -> list[Path]:
-    """Sorted video files and image folders of `folder`; raises InputError when there is none."""
-    if not folder.is_dir():
-        raise InputError(folder, "no such folder", "give a folder of videos")
-    found = [path for path in sorted(folder.iterdir()) if _is_recording(path)]
-    if not found:
-        raise InputError(folder, "holds no recording", "put video files or folders of images into it")
-    for path in found:
-        if path.suffix.lower() in IMAGE_SUFFIXES:
-            raise InputError(path, "a lone image", "put the images of one recording into a folder of their own")
-    return found
-
-
-def images(folder: Path) -> list[Path]:
-    """A recording's images by name, numbers in names counting as numbers (2 before 10)."""
-    found = [path for path in folder.iterdir() if path.suffix.lower() in IMAGE_SUFFIXES and path.name[0] != "."]
-    return sorted(found, key=lambda path: [(int(n or 0), text) for n, text in re.findall(r"(\d*)(\D*)", path.name)])
-
-
-def _is_recording(path: Path) -> bool:
-    if path.name.startswith("."):
-        return False
-    return bool(images(path)) if path.is_dir() else path.suffix.lower() not in COMPANION_SUFFIXES

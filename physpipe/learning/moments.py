@@ -6,14 +6,14 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from pydantic import Field
-from torch import Tensor
 
 from physpipe.core.determinism import device
 from physpipe.core.errors import InputError
+from physpipe.core.images import as_images
 from physpipe.core.params import Section
 from physpipe.io.clips import ClipSet
 from physpipe.tracknet.discriminator import MOMENTS
-from physpipe.tracknet.model import Moments
+from physpipe.tracknet.moments import Moments
 
 
 class MomentParams(Section):
@@ -22,18 +22,14 @@ class MomentParams(Section):
     strides: list[int] = Field(min_length=1)
     """Frames between two moments, one drawn at random; [1] = consecutive frames (paper)."""
     background_frames: int = Field(ge=3)
-    """Frames of a clip whose median is its background."""
+    """Frames of a recording, of all its clips that are learned from, whose median is its background."""
 
 
-def as_images(frames: NDArray[np.uint8]) -> Tensor:
-    """(..., H, W, 3) uint8 to (..., 3, H, W) float in [0, 1] on the computing device."""
-    return torch.from_numpy(frames).to(device()).movedim(-1, -3).float() / 255
-
-
-def background(frames: NDArray[np.uint8], count: int) -> NDArray[np.uint8]:
-    """(H, W, 3) temporal median over `count` frames spread evenly over (T, H, W, 3)."""
-    chosen = np.linspace(0, len(frames) - 1, min(count, len(frames))).round().astype(int)
-    return np.median(frames[chosen], axis=0).astype(np.uint8)
+def background(films: Sequence[NDArray[np.uint8]], count: int) -> NDArray[np.uint8]:
+    """(H, W, 3) temporal median over `count` frames spread evenly over films (T, H, W, 3) of one scene."""
+    every = [frame for film in films for frame in film]
+    chosen = np.linspace(0, len(every) - 1, min(count, len(every))).round().astype(int)
+    return np.median(np.stack([every[number] for number in chosen]), axis=0).astype(np.uint8)
 
 
 class MomentSampler:
@@ -54,7 +50,7 @@ class MomentSampler:
             raise InputError(clips.folder, f"no clip of more than {reach} frames to learn from", "ingest longer clips")
         self.params, self.batch_size, self.ignored = params, batch_size, ignored
         self.frames = {name: clips.frames(name) for name in self.names}
-        self.backgrounds = {name: background(self.frames[name], params.background_frames) for name in self.names}
+        self.backgrounds = self._backgrounds(clips)
 
     def __call__(self, generator: torch.Generator) -> Moments:
         chosen = [self._window(generator) for _ in range(self.batch_size)]
@@ -66,6 +62,17 @@ class MomentSampler:
             background=as_images(np.stack([self.backgrounds[name] for name, _ in chosen])),
             ignored=None if ignored is None else ignored.to(device()),
         )
+
+    def _backgrounds(self, clips: ClipSet) -> dict[str, NDArray[np.uint8]]:
+        """Of each clip: all clips of one recording share theirs, so that what rests for a while is no background."""
+        by_source: dict[str, list[str]] = {}
+        for name in self.names:
+            by_source.setdefault(clips.rows(name)["source"].iloc[0], []).append(name)
+        count, backgrounds = self.params.background_frames, {}
+        for names in by_source.values():
+            shared = background([self.frames[name] for name in names], count)
+            backgrounds.update(dict.fromkeys(names, shared))
+        return backgrounds
 
     def _window(self, generator: torch.Generator) -> tuple[str, NDArray[np.intp]]:
         """A clip and the five frame numbers taken from it."""

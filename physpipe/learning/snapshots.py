@@ -8,8 +8,8 @@ import torch
 from numpy.typing import NDArray
 
 from physpipe.core.determinism import device
+from physpipe.core.images import as_images
 from physpipe.io.clips import ClipSet
-from physpipe.learning.moments import as_images
 from physpipe.tracknet.model import TrackNet
 
 ROWS = 5

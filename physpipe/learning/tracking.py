@@ -16,10 +16,12 @@ from physpipe.core.params import Section
 from physpipe.io.clips import ClipSet, common_size
 from physpipe.learning.moments import MomentParams, MomentSampler
 from physpipe.learning.training import FitParams, fit
-from physpipe.trackers.detectors import together
-from physpipe.trackers.learned import ReadoutParams, cells
-from physpipe.trackers.sequential import MaskParams, hidden_by
-from physpipe.tracknet.model import Moments, TrackNet, TrackNetParams
+from physpipe.trackers.detectors import TrackingParams, together
+from physpipe.trackers.learned import cells
+from physpipe.trackers.sequential import SequentialTracker, hidden_by
+from physpipe.trackers.tables import ObjectsParams
+from physpipe.tracknet.model import TrackNet, TrackNetParams
+from physpipe.tracknet.moments import Moments
 from physpipe.tracknet.signals import LockParams, SignalParams, Signals, read_signals
 
 
@@ -44,8 +46,7 @@ class TrackerParams(Section):
     recipes: dict[str, RecipeParams]
     signals: SignalParams
     lock: LockParams
-    readout: ReadoutParams
-    mask: MaskParams
+    tracking: TrackingParams
     least_motion: float = Field(ge=0, le=1)
     """Share of the motion that must be left outside the masks for there to be another object."""
 
@@ -115,19 +116,27 @@ def learn_first(clips: ClipSet, params: TrackerParams, compute: ComputeParams, s
     return Learned(best, pd.concat(curves), task.read(best), nets)
 
 
-class ObjectsParams(Section):
-    """What moves in a data set's clips."""
-
-    objects: int = Field(ge=1)
-    """Number of objects, which the paper takes as given."""
-
-
 def learn_others(
-    clips: ClipSet, first: TrackNet, objects: int, params: TrackerParams, compute: ComputeParams, scratch: Path
+    clips: ClipSet,
+    first: TrackNet,
+    objects: ObjectsParams,
+    params: TrackerParams,
+    compute: ComputeParams,
+    scratch: Path,
 ) -> list[Learned]:
-    """T2 ... TK by sequential masking (paper section 3.1)."""
+    """T2 ... TK by sequential masking (paper section 3.1); none when T1 finds all objects at once.
+
+    Raises InputError when the number of objects is needed and not given, or more than T1 can find.
+    """
+    key, count, several = "params.yaml: `objects` of this data set", objects.objects, first.params.peaks
+    if several is not None:
+        if count is not None and count > several.slots:
+            raise InputError(key, f"asks for {count}; the detector finds {several.slots}", "raise `peaks.slots`")
+        return []
+    if count is None:
+        raise InputError(key, "empty, but sequential masking has to know", "give it, or use `tracker.recipe: joint`")
     learned: list[Learned] = []
-    while len(learned) + 1 < objects:
+    while len(learned) + 1 < count:
         learned.append(learn_next(clips, [first, *(each.net for each in learned)], params, compute, scratch))
     return learned
 
@@ -157,11 +166,12 @@ def motion_left(batches: list[Moments], stride: int) -> float:
 
 def masks(clips: ClipSet, found: list[TrackNet], params: TrackerParams) -> dict[str, NDArray[np.bool_]]:
     """(T, h, w) heat-map cells hidden by the objects found so far, for every clip that is learned from."""
-    tracker = together(found, params.readout, params.mask)
+    tracker, mask = together(found, params.tracking), params.tracking.mask
+    assert isinstance(tracker, SequentialTracker)  # nothing is masked for a detector with several peaks
     hidden = {}
     for name in clips.names("train", "valid"):
         frames = clips.frames(name)
-        ignored = hidden_by(tracker.track_all(frames), params.mask, *frames.shape[1:3])
+        ignored = hidden_by(tracker.track_all(frames), mask, *frames.shape[1:3])
         assert ignored is not None  # there is at least one earlier object
         hidden[name] = cells(ignored, found[0].detector.stride)
     return hidden

@@ -27,6 +27,7 @@ TRACKERS = {
     "trackpy": PALETTE[3],
     "median_blob": PALETTE[4],
     "knn_blob": PALETTE[6],
+    "mog2_blob": "#332288",
     "dis_simple": "#117733",
     "dis_blob": "#44aa99",
     "farneback_simple": "#882255",
@@ -34,6 +35,7 @@ TRACKERS = {
     "flow_simple": "#999933",
     "flow_blob": "#ddcc77",
     "centre": REFERENCE,
+    "persistence": "#5a5a5a",
 }
 
 

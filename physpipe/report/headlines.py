@@ -16,6 +16,10 @@ TRACKER_COLUMNS = {
     "off_track": "off track",
     "lost": "lost",
     "swaps": "swapped",
+    "hota": "HOTA",
+    "idf1": "IDF1",
+    "idf1_unflagged": "IDF1 unflagged",
+    "id_switches": "switches",
     "delta_avg": "δ avg",
     "locked": "locked",
 }

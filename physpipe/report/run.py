@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from pydantic import Field
 
 from physpipe.core.errors import InputError
 from physpipe.core.params import Section
@@ -29,6 +30,8 @@ class RunParams(Section):
     """Predictors trained on the unsupervised tracks."""
     supervised: list[str]
     """Data sets on which they are trained on the truth too, for the paper's supervised rows."""
+    flow: list[str] = Field(max_length=1)
+    """The flow network that is trained and tracked with, if any: `corrflow`."""
 
     @property
     def predictors(self) -> list[str]:

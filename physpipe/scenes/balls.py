@@ -11,6 +11,19 @@ from physpipe.scenes.look import Light, LookParams
 HIGHLIGHT = 16  # sharpness of a ball's highlight (Phong's exponent)
 
 
+Rgb = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Ball:
+    """What a ball is."""
+
+    rgb: Rgb
+    """Colour, 0 to 255."""
+    radius_m: float
+    """Radius in metres."""
+
+
 @dataclass(frozen=True)
 class Patches:
     """A thing smaller than the picture at F moments: picture <- picture * through + light."""
@@ -56,7 +69,7 @@ class Smear:
         return corner, dx, dy
 
 
-def draw_ball(smear: Smear, radius: float, rgb: tuple[int, int, int], light: Light, look: LookParams) -> Patches:
+def draw_ball(smear: Smear, radius: float, rgb: Rgb, light: Light, look: LookParams) -> Patches:
     """A lit sphere of `radius` pixels."""
     corner, dx, dy = smear.patches(radius + 1)
     distance = np.hypot(dx, dy)

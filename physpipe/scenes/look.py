@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from physpipe.core.params import Section
+from physpipe.scenes.texture import TextureParams
 
 
 class LookParams(Section):
@@ -16,10 +17,14 @@ class LookParams(Section):
     """Range of the terrain's brightness, 0 to 255, drawn for each clip."""
     tint: float = Field(ge=0)
     """Largest deviation of one colour channel from that grey, in grey levels."""
+    dye: tuple[float, float, float]
+    """Red, green and blue of the terrain, relative to that; three ones leave it grey."""
     mottle: float = Field(ge=0, lt=1)
     """Standard deviation of the surface's patchiness, relative to its brightness."""
     mottle_px: int = Field(ge=1)
     """Width of one patch, in source pixels."""
+    texture: TextureParams | None
+    """Finer structure of the terrain's surface; None for a smooth one."""
     contour_m: float = Field(gt=0)
     """Height between two contour rings, in metres."""
     contour_contrast: float = Field(ge=0, lt=1)

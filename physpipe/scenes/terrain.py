@@ -1,20 +1,39 @@
 """Surfaces that balls roll on: heights in metres over the horizontal plane, and where their border lies."""
 
 from abc import ABC, abstractmethod
-from typing import Literal
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
 
 from physpipe.core.params import Section
 
 Floats = NDArray[np.float64]
-STEEPEST = 1e-3  # keeps an ellipsoid's slope finite where it stands upright, for a ball on its way out
+
+
+class TerrainParams(Section):
+    """What every kind of terrain is told."""
+
+    fixed: bool
+    """True: one terrain, surface included, for the whole data set; false: drawn anew for every clip."""
+
+
+@dataclass(frozen=True)
+class Wall:
+    """An upright plane that throws balls back."""
+
+    xy_m: tuple[float, float]
+    """A point of it, in metres."""
+    inward: tuple[float, float]
+    """Its unit normal, horizontal, towards the balls."""
+    restitution: float
+    """Speed away from it over speed towards it, in (0, 1]."""
 
 
 class Terrain(ABC):
     """A smooth height function h(x, y) that one ball touches at one point: no tighter bend than the ball."""
+
+    walls: tuple[Wall, ...] = ()
 
     @abstractmethod
     def height(self, x: Floats, y: Floats) -> Floats:
@@ -32,60 +51,21 @@ class Terrain(ABC):
     def point(self, level: float, azimuth: float) -> tuple[float, float]:
         """The (x, y) in metres at a level, in the direction `azimuth` (radians) of the terrain's own frame."""
 
+    def foot(self, x: float, y: float, centre: tuple[float, float, float]) -> tuple[float, float]:
+        """The point nearest to a ball's centre, from (x, y), where it was a physics step ago.
 
-class BowlParams(Section):
-    """An ellipsoid's lower part, cut off level below its equator, turned by any angle about the vertical."""
+        The nearest point q has c = q + d n(q): q -> c - d n(q) contracts by d over the terrain's radius of bend, and q
+        hardly moves in a step, so two rounds reach rounding error where that radius is many times the ball's.
+        """
+        cx, cy, cz = centre
+        for _ in range(2):
+            height, slope_x, slope_y = self.height_and_slope(x, y)
+            norm2 = 1 + slope_x * slope_x + slope_y * slope_y
+            distance = (cz - height - slope_x * (cx - x) - slope_y * (cy - y)) / norm2
+            x, y = cx + distance * slope_x, cy + distance * slope_y
+        return x, y
 
-    kind: Literal["bowl"]
-    """Name in TERRAINS."""
-    rim_radius_m: tuple[float, float]
-    """Range of the rim's two semi-axes, in metres."""
-    depth_m: tuple[float, float]
-    """Range of the rim's height above the bottom, in metres."""
-    cut: float = Field(gt=0, lt=1)
-    """Rim's radius over the equator's: near 0 a paraboloid, near 1 a bowl whose wall ends upright."""
-
-    @model_validator(mode="after")
-    def _ranges_are_positive_and_ordered(self) -> "BowlParams":
-        for low, high in (self.rim_radius_m, self.depth_m):
-            if not 0 < low <= high:
-                raise ValueError(f"[{low}, {high}] is no range of positive lengths")
-        return self
-
-
-class Bowl(Terrain):
-    """An ellipsoidal bowl with its bottom at the origin."""
-
-    def __init__(self, params: BowlParams, rng: np.random.Generator):
-        self.rim = rng.uniform(*params.rim_radius_m, 2)  # semi-axes, metres
-        self.depth = float(rng.uniform(*params.depth_m))
-        yaw = rng.uniform(0, np.pi)
-        self._cos, self._sin = float(np.cos(yaw)), float(np.sin(yaw))
-        self._a2, self._b2 = (float(axis) for axis in (self.rim / params.cut) ** 2)
-        self._c = self.depth / (1 - float(np.sqrt(1 - params.cut**2)))  # vertical semi-axis, metres
-
-    def height(self, x: Floats, y: Floats) -> Floats:
-        inward = 1 / np.maximum(self.level(x, y), 1)
-        u, v = self._turned(x * inward, y * inward)
-        return self._c * (1 - np.sqrt(1 - u**2 / self._a2 - v**2 / self._b2))
-
-    def height_and_slope(self, x: float, y: float) -> tuple[float, float, float]:
-        u, v = self._cos * x + self._sin * y, self._cos * y - self._sin * x
-        root = max(1 - u * u / self._a2 - v * v / self._b2, STEEPEST) ** 0.5
-        du, dv = self._c * u / (self._a2 * root), self._c * v / (self._b2 * root)
-        return self._c * (1 - root), self._cos * du - self._sin * dv, self._sin * du + self._cos * dv
-
-    def level(self, x: Floats, y: Floats) -> Floats:
-        u, v = self._turned(x, y)
-        return np.hypot(u / self.rim[0], v / self.rim[1])
-
-    def point(self, level: float, azimuth: float) -> tuple[float, float]:
-        u, v = level * self.rim * (np.cos(azimuth), np.sin(azimuth))
-        return float(self._cos * u - self._sin * v), float(self._sin * u + self._cos * v)
-
-    def _turned(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """World to the ellipsoid's own axes."""
-        return self._cos * x + self._sin * y, self._cos * y - self._sin * x
-
-
-TERRAINS = {"bowl": Bowl}
+    def holds(self, x: Floats, y: Floats, radius_m: Floats) -> bool:
+        """Whether all balls centred over (K,) x, y lie within the border, edges included."""
+        outward = 1 + radius_m / np.maximum(np.hypot(x, y), radius_m)
+        return bool((self.level(x * outward, y * outward) < 1).all())

@@ -12,7 +12,9 @@ from physpipe.core.ball import BallParams
 from physpipe.core.params import Section
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
+from physpipe.metrics import identity
 from physpipe.metrics import trackers as metrics
+from physpipe.metrics.identity import Tracked
 from physpipe.metrics.trackers import OtherMotionParams
 
 ERRORS = ["tracker", "clip", "object", "frame", "error_px"]
@@ -48,14 +50,16 @@ def score_trackers(
     clips: ClipSet,
     truth: pd.DataFrame,
     tables: Mapping[str, pd.DataFrame],
-    locked: Mapping[str, bool],
+    verdicts: Mapping[str, Mapping[str, bool | float]],
     params: EvaluateTrackersParams,
     ball: BallParams,
 ) -> tuple[dict[str, dict[str, float | bool | None]], pd.DataFrame]:
     """Figures per tracker, and one row per tracker, clip, object and frame with its error (NaN where lost).
 
-    `locked` is each tracker's own verdict on itself; null where it gives none. Without an annotated test clip every
-    figure is null and `clips` is 0.
+    `verdicts` holds what a tracker says of itself without labels: `locked` and `score`, null where it is silent.
+    Without an annotated test clip every figure is null and `clips` is 0. Errors are those of the tracks that fit the
+    objects best over a clip, one to one: a track too many is passed over, an object without a track is lost. Figures of
+    identity count both, and are null for one object.
     """
     cases = _cases(clips, truth, params.other_motion, ball.ball_radius_px)
     figures: dict[str, dict[str, float | bool | None]] = {}
@@ -64,7 +68,11 @@ def score_trackers(
         known = tracks.by_clip(table)
         found = [_matched(known.get(case.clip), case) for case in cases]
         errors = _errors(found, cases)
-        figures[name] = {**_figures(found, cases, errors, params, ball), "locked": locked.get(name)}
+        figures[name] = {
+            **_figures(found, cases, errors, params, ball),
+            **_identity(known, tracks.ambiguous(table), cases, 2 * ball.ball_radius_px),
+            **{key: verdicts.get(name, {}).get(key) for key in ("locked", "score")},
+        }
         rows.append(errors.assign(tracker=name)[ERRORS])
     return figures, pd.concat(rows, ignore_index=True)
 
@@ -142,6 +150,22 @@ def _figures(
         **_apart(seen, "alone", seen["disturbed"] == 0),
         **_apart(seen, "disturbed", seen["disturbed"] == 1),
     }
+
+
+def _identity(
+    known: Mapping[str, NDArray[np.floating]],
+    flagged: Mapping[str, NDArray[np.bool_]],
+    cases: list[Case],
+    diameter_px: float,
+) -> dict[str, float | int]:
+    """Figures of identity over the clips with several objects; NaN where there is none."""
+    several = []
+    for case in cases:
+        T, K = case.truth.shape[:2]
+        if K > 1:
+            found = known.get(case.clip, np.empty((T, 0, 2)))
+            several.append(Tracked(found, case.truth, flagged.get(case.clip, np.empty((T, 0), bool))))
+    return identity.identity_figures(several, diameter_px)
 
 
 def _apart(seen: pd.DataFrame, name: str, which: pd.Series) -> dict[str, float]:

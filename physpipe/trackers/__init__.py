@@ -1,1 +1,1 @@
-"""L3: trackers on one contract."""
+"""L3: the contract of every tracker, and the learned one."""

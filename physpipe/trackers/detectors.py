@@ -1,15 +1,14 @@
-"""Files of trained trackers T1 ... TK, and the track table that they make."""
+"""Files of trained detectors T1 ... TK, and the tracker that they make together."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-import pandas as pd
-
-from physpipe.core.progress import progress
-from physpipe.io import checkpoints, tracks
-from physpipe.io.clips import ClipSet
+from physpipe.core.params import Section
+from physpipe.io import checkpoints
+from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
+from physpipe.trackers.linking import LinkParams
+from physpipe.trackers.refinement import RefineParams
 from physpipe.trackers.sequential import MaskParams, SequentialTracker
 from physpipe.tracknet.model import TrackNet, TrackNetParams
 
@@ -35,17 +34,20 @@ def load(path: Path) -> list[TrackNet]:
     return nets
 
 
-def together(nets: Sequence[TrackNet], readout: ReadoutParams, mask: MaskParams) -> SequentialTracker:
-    """T1 ... TK as one tracker of K objects."""
-    return SequentialTracker([LearnedTracker(each.detector, readout) for each in nets], mask)
+class TrackingParams(Section):
+    """How trained detectors are used."""
+
+    readout: ReadoutParams
+    mask: MaskParams
+    link: LinkParams
+    refine: RefineParams | None
+    """How positions are moved to the objects' middles; empty = not at all (paper)."""
 
 
-def track_table(clips: ClipSet, tracker: SequentialTracker) -> pd.DataFrame:
-    """THE track table of every clip; object k is what detector k finds, hence the same through a clip."""
-    tables = []
-    for name in progress(clips.names(), "tracking clips"):
-        found = tracker.track_all(clips.frames(name))
-        xy = np.stack([each.xy for each in found], axis=1)
-        score = np.stack([each.score for each in found], axis=1)
-        tables.append(tracks.rows(name, clips.times_s(name), xy, score))
-    return pd.concat(tables, ignore_index=True)
+def together(nets: Sequence[TrackNet], params: TrackingParams) -> SequentialTracker | PeakTracker:
+    """T1 ... TK as one tracker of K objects; a detector with several peaks as one of as many as there are."""
+    detectors = [LearnedTracker(each.detector, params.readout) for each in nets]
+    several = nets[0].params.peaks
+    if several is not None:
+        return PeakTracker(detectors[0], several, params.link, params.refine)
+    return SequentialTracker(detectors, params.mask)

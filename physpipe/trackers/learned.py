@@ -13,7 +13,7 @@ from physpipe.core.params import Section
 from physpipe.trackers.base import Trajectory
 from physpipe.tracknet.detector import Detector
 from physpipe.tracknet.heatmap import cell_centres, distribution, expected_position
-from physpipe.tracknet.model import masked
+from physpipe.tracknet.moments import masked
 
 
 class ReadoutParams(Section):
@@ -46,7 +46,6 @@ class LearnedTracker:
     @torch.no_grad()
     def heat_maps(self, frames: NDArray[np.uint8], ignore: NDArray[np.bool_] | None = None) -> Iterator[Tensor]:
         """(B, h, w) probabilities, batch after batch."""
-        hidden = None if ignore is None else torch.from_numpy(cells(ignore, self.detector.stride)).to(device())
         for first in range(0, len(frames), self.params.batch_frames):
             part = slice(first, first + self.params.batch_frames)
             images = torch.from_numpy(np.array(frames[part])).to(device()).movedim(-1, 1)

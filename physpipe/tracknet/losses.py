@@ -1,4 +1,4 @@
-"""The tracker's losses: causality, equivariance (paper section 3.1), and the motion warm start (ours)."""
+"""The tracker's losses: causality (paper section 3.1), and the motion warm start (ours)."""
 
 import torch
 import torch.nn.functional as F
@@ -6,55 +6,61 @@ from torch import Tensor
 
 from physpipe.tracknet.discriminator import MOMENTS, Discriminator, shuffles
 
+NEARBY_CELLS = 5
+"""Side of the square of cells in which motion is compared: about an object and its surroundings."""
 
-def causality(judge: Discriminator, xy: Tensor, negatives: int, generator: torch.Generator) -> Tensor:
-    """L_disc of (B, 5, 2) positions; the natural order and its shuffles weigh one half each.
+
+def causality(judge: Discriminator, xy: Tensor, weights: Tensor, negatives: int, generator: torch.Generator) -> Tensor:
+    """L_disc of (N, 5, 2) positions with (N,) weights that sum to 1; the natural order and its shuffles weigh one half
+    each.
 
     Scoring several shuffles of the same positions has the expectation of the paper's 50/50 coin and far less variance.
     """
-    return 0.5 * (F.softplus(-judge(xy)).mean() + F.softplus(judge(shuffled(xy, negatives, generator))).mean())
+    unnatural = F.softplus(judge(shuffled(xy, negatives, generator))).mean(1)
+    return 0.5 * (weights * (F.softplus(-judge(xy)) + unnatural)).sum()
 
 
 def shuffled(xy: Tensor, count: int, generator: torch.Generator) -> Tensor:
-    """(B, count, 5, 2): (B, 5, 2) positions in `count` unnatural orders each."""
+    """(N, count, 5, 2): (N, 5, 2) positions in `count` unnatural orders each."""
     orders = shuffles(count, len(xy), generator).to(xy.device)
     return xy[torch.arange(len(xy), device=xy.device)[:, None, None], orders]
 
 
-def causality_by_coin(judge: Discriminator, xy: Tensor, generator: torch.Generator) -> Tensor:
-    """L_disc as the paper states it: each (B, 5, 2) trajectory is shuffled with probability one half."""
+def causality_by_coin(judge: Discriminator, xy: Tensor, weights: Tensor, generator: torch.Generator) -> Tensor:
+    """L_disc as the paper states it: each (N, 5, 2) trajectory is shuffled with probability one half."""
     orders = shuffles(1, len(xy), generator)[:, 0]
     heads = torch.rand(len(xy), generator=generator) < 0.5
     orders = torch.where(heads[:, None], torch.arange(MOMENTS), orders).to(xy.device)
     logits = judge(xy.gather(1, orders[..., None].expand(-1, -1, 2)))
-    return F.softplus(torch.where(heads.to(xy.device), -logits, logits)).mean()
-
-
-def turned(frames: Tensor, turns: int, mirrored: bool) -> Tensor:
-    """(B, 3, H, W) frames mirrored left-right if asked, then turned by `turns` quarter turns."""
-    return torch.rot90(frames.flip(-1) if mirrored else frames, turns, (-2, -1))
-
-
-def turned_back(xy: Tensor, turns: int, mirrored: bool, height: int, width: int) -> Tensor:
-    """(..., 2) pixels of a `turned` frame as pixels of the frame before it, which was height x width."""
-    h, w = (height, width) if turns % 2 == 0 else (width, height)
-    for _ in range(turns % 4):
-        x, y = xy.unbind(-1)
-        xy = torch.stack([h - 1 - y, x], -1)
-        h, w = w, h
-    return torch.stack([w - 1 - xy[..., 0], xy[..., 1]], -1) if mirrored else xy
+    return (weights * F.softplus(torch.where(heads.to(xy.device), -logits, logits))).sum()
 
 
 def motion_target(frames: Tensor, background: Tensor, stride: int) -> Tensor:
-    """(B, h, w) distribution of where (B, 3, H, W) frames differ from their clip's background.
+    """(B, h, w) distribution of where (B, 3, H, W) frames differ from their clip's background."""
+    above = _standing_out(frames, background, stride)
+    return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
 
-    Squared residuals less their median over the frame (noise, light), so that only what stands out is left.
+
+def even_motion_target(frames: Tensor, background: Tensor, stride: int, even: float) -> Tensor:
+    """As `motion_target`, but objects of little contrast weigh nearly as much as others.
+
+    Motion is taken relative to the strongest nearby, so that an object's peak stays as sharp as it is; `even` is the
+    share of the strongest motion in a frame, on average over the batch, at which a peak counts half. A frame in which
+    nothing moves, less than half a cell in all, has a sum below 1, so that its noise teaches little.
     """
+    above = _standing_out(frames, background, stride)
+    strongest = above.flatten(1).max(1).values.mean().clamp_min(1e-12)
+    nearby = F.max_pool2d(above[:, None], NEARBY_CELLS, stride=1, padding=NEARBY_CELLS // 2)[:, 0]
+    counted = above / (nearby + even * strongest)
+    return counted / counted.flatten(1).sum(1).clamp_min(0.5)[:, None, None]
+
+
+def _standing_out(frames: Tensor, background: Tensor, stride: int) -> Tensor:
+    """(B, h, w) squared residuals less what most of the frame shows (noise, light), squared again."""
     residual = (frames - background).square().mean(1, keepdim=True)
     pooled = F.avg_pool2d(residual, stride)[:, 0]
     floor = pooled.flatten(1).quantile(0.9, dim=1)[:, None, None]
-    above = (pooled - floor).clamp_min(0).square()
-    return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
+    return (pooled - floor).clamp_min(0).square()
 
 
 def motion_cross_entropy(logits: Tensor, target: Tensor) -> Tensor:

@@ -1,7 +1,6 @@
 """The unsupervised tracker while it learns: detector, discriminator and the schedule that makes them lock."""
 
 import math
-from dataclasses import dataclass
 
 import torch
 from pydantic import Field
@@ -10,22 +9,18 @@ from torch import Tensor, nn
 from physpipe.core.params import Section
 from physpipe.tracknet.detector import Detector, DetectorParams
 from physpipe.tracknet.discriminator import Discriminator, DiscriminatorParams
-from physpipe.tracknet.heatmap import distribution, entropy, expected_position
-from physpipe.tracknet.losses import (
-    causality,
-    causality_by_coin,
-    motion_cross_entropy,
-    motion_target,
-    turned,
-    turned_back,
-)
+from physpipe.tracknet.heatmap import distribution
+from physpipe.tracknet.losses import causality, causality_by_coin, motion_cross_entropy
+from physpipe.tracknet.moments import Moments, masked
+from physpipe.tracknet.places import PeakParams, Places, around, linked, peaks, taken, whole
+from physpipe.tracknet.turns import turned, turned_along, turned_back
 
 COIN_NATS = math.log(2)
 """Loss of a discriminator that cannot tell."""
 
 
 class LossParams(Section):
-    """Weights of the paper's losses (section 3.1: 1, 0.01, 0.001)."""
+    """Weights of the paper's losses (section 3.1: 1, 0.01, 0.001), and of ours."""
 
     causality: float = Field(ge=0)
     """Weight of L_disc (nats)."""
@@ -33,6 +28,8 @@ class LossParams(Section):
     """Weight of L_ent (nats)."""
     equivariance: float = Field(ge=0)
     """Weight of L_siam (squared pixels)."""
+    motion: float = Field(ge=0)
+    """Weight of the heat map's cross-entropy with the motion residual after the warm start, nats; 0 = none (paper)."""
 
 
 class BottleneckParams(Section):
@@ -65,27 +62,8 @@ class TrackNetParams(Section):
     """Largest random gain of single frames, so that brightness tells no order; 0 = none (paper)."""
     warm_start_steps: int = Field(ge=0)
     """First steps, in which the heat map is fitted to the motion residual; 0 = none (paper)."""
-
-
-@dataclass(frozen=True)
-class Moments:
-    """A training batch."""
-
-    frames: Tensor
-    """(B, 5, 3, H, W) in [0, 1], five moments of one film in their natural order."""
-    background: Tensor
-    """(B, 3, H, W) temporal median of each film."""
-    ignored: Tensor | None = None
-    """(B, 5, h, w) heat-map cells where nothing may be found (sequential masking), or None."""
-
-    def motion(self, stride: int) -> Tensor:
-        """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included."""
-        background = self.background.repeat_interleave(self.frames.shape[1], 0)
-        return motion_target(self.frames.flatten(0, 1), background, stride)
-
-    def outside_mask(self, cells: Tensor) -> Tensor:
-        """(B * 5, h, w) `cells`, 0 where ignored."""
-        return cells if self.ignored is None else cells * ~self.ignored.flatten(0, 1)
+    peaks: PeakParams | None
+    """How several objects are found at once; empty = one object, the mean of the whole heat map (paper)."""
 
 
 class TrackNet(nn.Module):
@@ -123,40 +101,76 @@ class TrackNet(nn.Module):
         return self._paper(batch, frames, logits, generator)
 
     def _warm_start(self, batch: Moments, logits: Tensor) -> tuple[Tensor, dict[str, float]]:
-        target = batch.outside_mask(batch.motion(self.detector.stride))
-        loss = motion_cross_entropy(logits, target)
+        loss = self._motion(batch, logits)
         return loss, {"motion_nats": loss.item()}
+
+    def _motion(self, batch: Moments, logits: Tensor) -> Tensor:
+        several, stride = self.params.peaks, self.detector.stride
+        target = batch.motion(stride) if several is None else batch.even_motion(stride, several.even)
+        return motion_cross_entropy(logits, batch.outside_mask(target))
 
     def _paper(
         self, batch: Moments, frames: Tensor, logits: Tensor, generator: torch.Generator
     ) -> tuple[Tensor, dict[str, float]]:
-        heat = distribution(logits)
-        xy = expected_position(heat, self.detector.stride)
-        order = self._order_loss(xy.unflatten(0, batch.frames.shape[:2]), generator)
-        spread = entropy(heat).mean()
-        siamese = self._equivariance(frames, xy, batch.ignored, generator)
+        found = self.places(distribution(logits))
+        tracks, weights = self.tracks(found, len(batch.frames))
+        order = self._order_loss(tracks, weights, generator)
+        shares = self.shares(found.mass)
+        spread = (shares * found.spread).sum()
+        siamese = self._equivariance(frames, found, batch.ignored, generator)
         self._adapt(order.item())
-        weights, ramp = self.params.losses, self.ramp()
-        loss = weights.causality * order + ramp * (weights.entropy * spread + weights.equivariance * siamese)
+        weigh, ramp = self.params.losses, self.ramp()
+        loss = weigh.causality * order + ramp * (weigh.entropy * spread + weigh.equivariance * siamese)
         parts = {"order_nats": order, "entropy_nats": spread, "siamese_px2": siamese, "sigma_px": self.sigma}
+        if weigh.motion:
+            parts["motion_nats"] = self._motion(batch, logits)
+            loss = loss + weigh.motion * parts["motion_nats"]
         return loss, {name: value.item() for name, value in parts.items()}
 
-    def _order_loss(self, xy: Tensor, generator: torch.Generator) -> Tensor:
+    def places(self, heat: Tensor, centres: Tensor | None = None) -> Places:
+        """Where objects are in (B, h, w); at the heat map's own peaks unless (B, K, 2) `centres` are given."""
+        params, stride = self.params.peaks, self.detector.stride
+        if params is None:
+            return whole(heat, stride)
+        return around(heat, stride, peaks(heat, stride, params) if centres is None else centres, params.window_px)
+
+    def shares(self, mass: Tensor) -> Tensor:
+        """Weights that sum to 1 of places or tracks of (B, K) `mass`: 0 where it is too little for an object."""
+        least = 0.0 if self.params.peaks is None else self.params.peaks.least_mass
+        kept = torch.where(mass >= least, mass, 0).detach()
+        return kept / kept.sum().clamp_min(1e-6)
+
+    def tracks(self, found: Places, films: int) -> tuple[Tensor, Tensor]:
+        """(N, 5, 2) positions of the same object through the moments of each film, and their (N,) weights."""
+        xy, mass = (each.unflatten(0, (films, -1)) for each in (found.xy, found.mass))
+        order = linked(xy.detach())
+        weights = self.shares(mass.gather(2, order).min(1).values)
+        return taken(xy, order).transpose(1, 2).flatten(0, 1), weights.flatten()
+
+    def _order_loss(self, xy: Tensor, weights: Tensor, generator: torch.Generator) -> Tensor:
         if self.params.bottleneck.end_px:
             xy = xy + self.sigma * torch.randn(xy.shape, generator=generator).to(xy)
         if self.params.negatives == 0:
-            return causality_by_coin(self.judge, xy, generator)
-        return causality(self.judge, xy, self.params.negatives, generator)
+            return causality_by_coin(self.judge, xy, weights, generator)
+        return causality(self.judge, xy, weights, self.params.negatives, generator)
 
-    def _equivariance(self, frames: Tensor, xy: Tensor, ignored: Tensor | None, generator: torch.Generator) -> Tensor:
+    def _equivariance(
+        self, frames: Tensor, found: Places, ignored: Tensor | None, generator: torch.Generator
+    ) -> Tensor:
         chosen = torch.randperm(len(frames), generator=generator)[: max(1, int(self.params.turned_share * len(frames)))]
         turns = (1, 3)[int(torch.randint(2, (), generator=generator))]
         mirrored = self.params.mirrored and bool(torch.randint(2, (), generator=generator))
-        other = None if ignored is None else turned(ignored.flatten(0, 1)[chosen][:, None], turns, mirrored)
-        logits = masked(self.detector(turned(frames[chosen], turns, mirrored)), other)
-        seen = expected_position(distribution(logits), self.detector.stride)
-        back = turned_back(seen, turns, mirrored, *frames.shape[-2:])
-        return (back - xy[chosen]).square().sum(1).mean()
+        hidden = None if ignored is None else ignored.flatten(0, 1)[chosen]
+        errors = self.turning_errors(frames[chosen], found.xy[chosen], hidden, turns, mirrored)
+        return (self.shares(found.mass[chosen]) * errors).sum()
+
+    def turning_errors(self, frames: Tensor, xy: Tensor, ignored: Tensor | None, turns: int, mirrored: bool) -> Tensor:
+        """(B, K) squared px between `xy` (B, K, 2) in the frames and what is found there in the turned frames."""
+        H, W = frames.shape[-2:]
+        hidden = None if ignored is None else turned(ignored[:, None], turns, mirrored)
+        heat = distribution(masked(self.detector(turned(frames, turns, mirrored)), hidden))
+        seen = self.places(heat, turned_along(xy.detach(), turns, mirrored, H, W)).xy
+        return (turned_back(seen, turns, mirrored, H, W) - xy).square().sum(-1)
 
     def ramp(self) -> Tensor:
         """How much of the sharpening losses' weight is on: nothing sharpens before the order can be told."""
@@ -170,14 +184,3 @@ class TrackNet(nn.Module):
             wins = bool(self.running < bottleneck.winning)
             self.sigma.mul_(bottleneck.growth if wins else 1 / bottleneck.growth)
             self.sigma.clamp_(bottleneck.start_px, bottleneck.end_px)
-
-
-def masked(logits: Tensor, ignored: Tensor | None) -> Tensor:
-    """Scores shifted to be positive, then zero where `ignored`, as the paper does before the softmax (section 3.1).
-
-    A softmax gives exp(0 - bias) at those cells: with a bias of 100 above the lowest score, nothing.
-    """
-    if ignored is None:
-        return logits
-    lowest = logits.flatten(1).min(1).values[:, None, None]
-    return torch.where(ignored.view(logits.shape), torch.zeros_like(logits), logits - lowest + 100.0)

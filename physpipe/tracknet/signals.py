@@ -7,9 +7,10 @@ from pydantic import Field
 from torch import Tensor
 
 from physpipe.core.params import Section
-from physpipe.tracknet.heatmap import cell_centres, distribution, entropy, expected_position
-from physpipe.tracknet.losses import causality, shuffled, turned, turned_back
-from physpipe.tracknet.model import Moments, TrackNet, masked
+from physpipe.tracknet.heatmap import cell_centres, distribution
+from physpipe.tracknet.losses import causality, shuffled
+from physpipe.tracknet.model import TrackNet
+from physpipe.tracknet.moments import Moments, masked
 
 
 class SignalParams(Section):
@@ -83,32 +84,32 @@ def read_signals(net: TrackNet, batches: list[Moments], params: SignalParams, ge
 
 
 def _of_batch(net: TrackNet, batch: Moments, params: SignalParams, generator: torch.Generator) -> dict[str, Tensor]:
-    stride, frames = net.detector.stride, batch.frames.flatten(0, 1)
-    heat = distribution(masked(net.detector(frames), batch.ignored))
-    xy = expected_position(heat, stride)
-    windows = xy.unflatten(0, batch.frames.shape[:2])
-    noisy = windows + params.noise_px * torch.randn(windows.shape, generator=generator).to(xy)
-    other = None if batch.ignored is None else turned(batch.ignored.flatten(0, 1)[:, None], 1, False)
-    seen = expected_position(distribution(masked(net.detector(turned(frames, 1, False)), other)), stride)
-    back = turned_back(seen, 1, False, *frames.shape[-2:])
+    frames = batch.frames.flatten(0, 1)
+    found = net.places(distribution(masked(net.detector(frames), batch.ignored)))
+    shares = net.shares(found.mass)
+    tracks, weights = net.tracks(found, len(batch.frames))
+    noisy = tracks + params.noise_px * torch.randn(tracks.shape, generator=generator).to(tracks)
+    hidden = None if batch.ignored is None else batch.ignored.flatten(0, 1)
+    extents = (tracks - tracks.mean(1, keepdim=True)).square().sum(-1).mean(1).sqrt()
     return {
-        "order_nats": causality(net.judge, noisy, 8, generator),
-        "order_accuracy": _accuracy(net, noisy, generator),
-        "siamese_px2": (back - xy).square().sum(1).mean(),
-        "entropy_nats": entropy(heat).mean(),
-        "motion_share": _motion_share(batch, xy, stride, params.near_px),
-        "extent_px": (windows - windows.mean(1, keepdim=True)).square().sum(-1).mean(1).sqrt().median(),
+        "order_nats": causality(net.judge, noisy, weights, 8, generator),
+        "order_accuracy": _accuracy(net, noisy, weights, generator),
+        "siamese_px2": (shares * net.turning_errors(frames, found.xy, hidden, 1, False)).sum(),
+        "entropy_nats": (shares * found.spread).sum(),
+        "motion_share": _motion_share(batch, found.xy, shares > 0, net.detector.stride, params.near_px),
+        "extent_px": extents[weights > 0].median() if (weights > 0).any() else torch.zeros(()),
     }
 
 
-def _accuracy(net: TrackNet, xy: Tensor, generator: torch.Generator) -> Tensor:
-    unnatural = shuffled(xy, 8, generator)
-    return 0.5 * ((net.judge(xy) > 0).float().mean() + (net.judge(unnatural) < 0).float().mean())
+def _accuracy(net: TrackNet, xy: Tensor, weights: Tensor, generator: torch.Generator) -> Tensor:
+    unnatural = (net.judge(shuffled(xy, 8, generator)) < 0).float().mean(1)
+    return 0.5 * (weights * ((net.judge(xy) > 0).float() + unnatural)).sum()
 
 
-def _motion_share(batch: Moments, xy: Tensor, stride: int, near_px: float) -> Tensor:
+def _motion_share(batch: Moments, xy: Tensor, held: Tensor, stride: int, near_px: float) -> Tensor:
+    """Share of the motion near any of the places (B, K, 2) that are `held` (B, K)."""
     motion = batch.motion(stride)
     xs, ys = (cell_centres(count, stride).to(xy) for count in (motion.shape[2], motion.shape[1]))
-    across, down = (xs - xy[:, :1]).square(), (ys - xy[:, 1:]).square()
-    near = across[:, None, :] + down[:, :, None] <= near_px**2
-    return (motion * near).flatten(1).sum(1).mean()
+    across, down = (xs - xy[..., :1]).square(), (ys - xy[..., 1:]).square()
+    near = (across[..., None, :] + down[..., :, None] <= near_px**2) & held[..., None, None]
+    return (motion * near.any(1)).flatten(1).sum(1).mean()

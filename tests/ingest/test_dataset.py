@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
 from physpipe.core.errors import DiskFullError, InputError
 from physpipe.ingest import dataset, recording
-from physpipe.ingest.dataset import IngestParams, SplitParams, clip_name, ingest, split_of
+from physpipe.ingest.dataset import IngestParams, clip_name, ingest
 from physpipe.io import clips
 from physpipe.io.clips import Clip, ClipSet
 
@@ -108,6 +107,80 @@ def test_what_the_set_no_longer_uses_is_removed(raw: Path, ingest_params: Any, t
     assert len(list(store.iterdir())) == 1
 
 
+@pytest.fixture
+def nested(tmp_path: Path, roll: Roll, film: Film) -> Path:
+    """A set as others publish theirs: videos of the same name in several folders, notes and tables beside them."""
+    for seed, name in enumerate(("PoolR/test/1.mkv", "PoolR/train/1.mkv", "PoolR/train/2.mkv", "BowlR/1.mkv")):
+        film(tmp_path / "raw" / name, roll(count=40, seed=seed), np.arange(40) / 200)
+    for name in ("README.txt", "PoolR/meta.json", "PoolR/train/list.txt", "PoolR/train/1.csv"):
+        (tmp_path / "raw" / name).write_text("words")
+    return tmp_path / "raw"
+
+
+def divided(raw: Path, **splits: str) -> None:
+    """The set's split file, by the video's number: `PoolR/test/1.mkv` is t1, the next n1 and n2, the last b1."""
+    names = {"t1": "PoolR/test/1.mkv", "n1": "PoolR/train/1", "n2": "PoolR/train/2.mkv", "b1": "BowlR/1"}
+    rows = [f"{names[key]},{split}" for key, split in splits.items()]
+    (raw / "splits.csv").write_text("\n".join(["recording,split", *rows]))
+
+
+def test_folders_in_folders_keep_videos_of_one_name_apart(nested: Path, ingest_params: Any) -> None:
+    found = made(nested, ingest_params)
+    assert [clip.name for clip in found[::2]] == [
+        "BowlR-1_00",
+        "PoolR-test-1_00",
+        "PoolR-train-1_00",
+        "PoolR-train-2_00",
+    ]
+    assert [clip.source for clip in found[1::2]] == [
+        "BowlR/1.mkv",
+        "PoolR/test/1.mkv",
+        "PoolR/train/1.mkv",
+        "PoolR/train/2.mkv",
+    ]
+    assert len({clip.frames.tobytes() for clip in found}) == 8
+    _, table = ingest("set", nested, IngestParams(**ingest_params))
+    assert table["source"].tolist() == [clip.source for clip in found[::2]]
+
+
+def test_a_split_file_decides_for_all_clips_of_a_recording(nested: Path, ingest_params: Any) -> None:
+    divided(nested, t1="test", n1="train", n2="valid", b1="train")
+    found = made(nested, ingest_params, split={"valid": 0.2, "test": 0.2})
+    assert len(found) == 8
+    assert {(clip.source, clip.split) for clip in found} == {
+        ("BowlR/1.mkv", "train"),
+        ("PoolR/test/1.mkv", "test"),
+        ("PoolR/train/1.mkv", "train"),
+        ("PoolR/train/2.mkv", "valid"),
+    }
+
+
+def test_another_split_file_decodes_nothing_again(nested: Path, ingest_params: Any, conversions: list[str]) -> None:
+    before = made(nested, ingest_params)
+    assert len(conversions) == 4
+    divided(nested, t1="test", n1="train", n2="train", b1="test")
+    made(nested, ingest_params)
+    divided(nested, t1="train", n1="train", n2="test", b1="train")
+    after = made(nested, ingest_params)
+    assert len(conversions) == 4
+    assert [clip.split for clip in after] == ["train"] * 6 + ["test"] * 2
+    for one, other in zip(before, after, strict=True):
+        assert np.array_equal(one.frames, other.frames)
+
+
+def test_a_bad_split_file_is_refused_before_anything_is_decoded(
+    nested: Path, ingest_params: Any, conversions: list[str]
+) -> None:
+    divided(nested, t1="test", n1="training", n2="train", b1="train")
+    with (nested / "splits.csv").open("a") as file:
+        file.write("\nPoolR/train/3.mkv,train")
+    error = refusal(nested, ingest_params)
+    assert error.where.endswith("splits.csv")
+    assert "line 3: no split `training`" in error.reason
+    assert "line 6: no recording `PoolR/train/3.mkv`" in error.reason
+    assert conversions == []
+
+
 def test_a_process_pool_gives_the_same_clips(
     raw: Path, ingest_params: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -171,22 +244,11 @@ def test_an_empty_folder_is_refused(tmp_path: Path, ingest_params: Any) -> None:
 def test_an_empty_split_is_refused_unless_its_share_is_zero(raw: Path, ingest_params: Any) -> None:
     error = refusal(raw, ingest_params, split={"valid": 0.0, "test": 1e-9})
     assert "no clip falls into the split `test` (train 5, valid 0, test 0)" in error.reason
-    assert "set it to 0" in error.mend
-
-
-def test_splits_have_their_shares_and_depend_on_the_name_alone() -> None:
-    names = [f"clip_{number:04d}_00" for number in range(4000)]
-    shares = SplitParams(valid=0.15, test=0.2)
-    splits = [split_of(name, shares) for name in names]
-    assert splits.count("valid") / 4000 == pytest.approx(0.15, abs=0.02)  # three standard deviations
-    assert splits.count("test") / 4000 == pytest.approx(0.2, abs=0.02)
-    assert [split_of(name, shares) for name in names[::-1]] == splits[::-1]
-    with pytest.raises(ValidationError):
-        SplitParams(valid=0.6, test=0.6)
+    assert "set its share to 0" in error.mend
 
 
 def test_names_are_safe_everywhere() -> None:
-    assert clip_name(Path("mit Öl/ball (1).final.mp4"), 3) == "ball-1-final_03"
+    assert clip_name("mit Öl/ball (1).final", 3) == "mit-l-ball-1-final_03"
 
 
 def test_gaps_and_lost_frames_reach_the_clip_table(tmp_path: Path, roll: Roll, film: Film, ingest_params: Any) -> None:

@@ -110,3 +110,14 @@ def test_absent_and_foreign_files_are_refused(tmp_path: Path) -> None:
 def test_a_folder_of_tables_comes_back_by_tracker(tmp_path: Path, film: ClipSet) -> None:
     tracks.save_folder(tmp_path / "all", {"lab": table(), "centre": table()}, "test", film)
     assert list(tracks.load_folder(tmp_path / "all")) == ["centre", "lab"]
+
+
+def test_doubtful_rows_are_found_again_by_clip_object_and_frame(tmp_path: Path, film: ClipSet) -> None:
+    status = np.full((T, K), "tracked", object)
+    status[2, 0] = status[3, 1] = tracks.AMBIGUOUS
+    tracks.save(tmp_path / "t.parquet", tracks.rows("a", TIMES_S, positions(0), np.ones((T, K)), status), "test", film)
+    flagged = tracks.ambiguous(tracks.load(tmp_path / "t.parquet"))
+    expected = status == tracks.AMBIGUOUS
+    expected[3, 1] = False  # that one is lost
+    assert list(flagged) == ["a"]
+    np.testing.assert_array_equal(flagged["a"], expected)

@@ -192,22 +192,3 @@ def test_images_are_a_recording_in_the_order_of_their_numbers(tmp_path: Path) ->
     assert frames[11].time_s == pytest.approx(0.55)
     assert [level(frame) for frame in frames[9:]] == pytest.approx([74, 80, 86], abs=1)
     assert "source_fps" in refusal(folder)
-
-
-def test_a_folder_lists_recordings_and_leaves_their_companions(tmp_path: Path) -> None:
-    for name in ("b.MP4", "a.webm", "a.ref.csv", "LICENSE", "README.md", ".hidden.mp4"):
-        (tmp_path / name).write_bytes(b"x")
-    (tmp_path / "c").mkdir()
-    (tmp_path / "c" / "1.png").write_bytes(b"x")
-    (tmp_path / "empty").mkdir()
-    assert [path.name for path in video.recordings(tmp_path)] == ["a.webm", "b.MP4", "c"]
-
-
-def test_folders_without_recordings_and_lone_images_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no such folder"):
-        video.recordings(tmp_path / "absent")
-    with pytest.raises(InputError, match="holds no recording"):
-        video.recordings(tmp_path)
-    (tmp_path / "1.png").write_bytes(b"x")
-    with pytest.raises(InputError, match="a lone image"):
-        video.recordings(tmp_path)

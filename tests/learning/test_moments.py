@@ -57,4 +57,4 @@ def test_the_mask_goes_with_its_frames(clips):
 def test_the_background_is_what_stays():
     frames = worlds.draw(worlds.orbit(40, 0.3)[:, None], [worlds.RED], seed=0)
     still = worlds.draw(np.full((1, 1, 2), -50.0), [worlds.RED], seed=0)[0]
-    assert np.abs(background(frames, 25).astype(int) - still).max() < 12  # grey levels, of noise 2
+    assert np.abs(background([frames], 25).astype(int) - still).max() < 12  # grey levels, of noise 2

@@ -9,23 +9,28 @@ import worlds
 
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
-from physpipe.io import results
+from physpipe.io import results, tracks
 from physpipe.learning import lessons, tracking
 from physpipe.learning.moments import MomentParams
 from physpipe.learning.tracking import RecipeParams, TrackerParams, learn_first, learn_others
 from physpipe.learning.training import FitParams
+from physpipe.metrics import trackers as metrics
 from physpipe.trackers import detectors
+from physpipe.trackers.detectors import TrackingParams
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
+from physpipe.trackers.linking import LinkParams
 from physpipe.trackers.sequential import MaskParams
+from physpipe.trackers.tables import ObjectsParams, track_tables
 from physpipe.tracknet.detector import DetectorParams
 from physpipe.tracknet.discriminator import DiscriminatorParams
 from physpipe.tracknet.model import BottleneckParams, LossParams, TrackNetParams
+from physpipe.tracknet.places import PeakParams
 from physpipe.tracknet.signals import LockParams, SignalParams, locked
 
 COMPUTE = ComputeParams(seed=0, threads=1)
 
 
-def params(steps: int, warm: int, rest: int = 40) -> TrackerParams:
+def params(steps: int, warm: int, rest: int = 40, several: bool = False) -> TrackerParams:
     fit = FitParams(
         steps=steps,
         batch_size=8,
@@ -41,13 +46,14 @@ def params(steps: int, warm: int, rest: int = 40) -> TrackerParams:
     net = TrackNetParams(
         detector=DetectorParams(width=8, layers=1, stride=4),
         discriminator=DiscriminatorParams(width=32, shape_only=True),
-        losses=LossParams(causality=1, entropy=0.01, equivariance=0.001),
+        losses=LossParams(causality=1, entropy=0.01, equivariance=0.001, motion=0.3 if several else 0),
         bottleneck=BottleneckParams(start_px=0.02, end_px=0.4, growth=1.05, winning=0.5),
         negatives=8,
         turned_share=0.4,
         mirrored=True,
         flicker=0.1,
         warm_start_steps=warm,
+        peaks=PeakParams(slots=3, apart_px=7, window_px=6, least_mass=0.15, even=0.02) if several else None,
     )
     recipe = RecipeParams(
         net=net,
@@ -61,19 +67,33 @@ def params(steps: int, warm: int, rest: int = 40) -> TrackerParams:
         recipes={"small": recipe},
         signals=SignalParams(noise_px=0.4, batches=3, siamese_weight=0.1, near_px=6),
         lock=LockParams(order_accuracy=0.8, siamese_px=3, entropy_nats=3.5, motion_share=0.3, extent_px=0.5),
-        readout=ReadoutParams(window_px=9, batch_frames=32),
-        mask=MaskParams(radius_px=8),
+        tracking=TrackingParams(
+            readout=ReadoutParams(window_px=9, batch_frames=32),
+            mask=MaskParams(radius_px=8),
+            link=LinkParams(
+                gate_px=8, apart_px=2, memory_frames=3, least_share=0.5, doubt_px=2, still_px=1, search_px=5
+            ),
+            refine=None,
+        ),
         least_motion=0.15,
     )
 
 
-def orbits(folder, colours=(worlds.RED,)):
-    """Ten clips of one or two balls half an orbit apart, and their truth (T, K, 2)."""
+def orbits(folder, colours=(worlds.RED,), post=False):
+    """Ten clips of one or two balls half an orbit apart, and their truth (T, K, 2).
+
+    A `post`, 4 px wide, stands before the ball's way, and a blue ball lies still beside it.
+    """
     phases = [0.6 * number for number in range(10)]
     truth = [
         np.stack([worlds.orbit(24, phase + math.pi * each) for each in range(len(colours))], axis=1) for phase in phases
     ]
     films = [worlds.draw(xy, list(colours), seed) for seed, xy in enumerate(truth)]
+    if post:
+        still = np.full((24, 1, 2), [27.0, 19.0])
+        films = [worlds.draw(np.concatenate([xy, still], 1), [*colours, worlds.BLUE], n) for n, xy in enumerate(truth)]
+        for film in films:
+            film[:, :, 36:40] = 90
     clips = worlds.save_clips(folder, films)
     return clips, dict(zip(clips.names(), truth, strict=True))
 
@@ -81,7 +101,7 @@ def orbits(folder, colours=(worlds.RED,)):
 def test_a_rolling_ball_is_found_without_labels_and_the_verdict_says_so(tmp_path):
     clips, truth = orbits(tmp_path / "clips")
     learned = learn_first(clips, params(steps=100, warm=60, rest=100), COMPUTE, tmp_path / "scratch")
-    tracker = LearnedTracker(learned.net.detector, params(1, 1).readout)
+    tracker = LearnedTracker(learned.net.detector, params(1, 1).tracking.readout)
     errors = [np.linalg.norm(tracker.track(clips.frames(n)).xy - truth[n][:, 0], axis=1) for n in clips.names("test")]
     assert np.mean(errors) < 1.5  # pixels, of a ball 6 px wide and cells 4 px wide
     assert locked(learned.signals, params(1, 1).lock)
@@ -91,12 +111,59 @@ def test_two_balls_are_found_one_after_the_other(tmp_path):
     clips, truth = orbits(tmp_path / "clips", (worlds.RED, worlds.BLUE))
     recipe = params(steps=100, warm=60, rest=100)
     first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
-    others = learn_others(clips, first.net, 2, recipe, COMPUTE, tmp_path / "scratch")
-    tracker = detectors.together([first.net, *(each.net for each in others)], recipe.readout, recipe.mask)
+    others = learn_others(clips, first.net, ObjectsParams(objects=2), recipe, COMPUTE, tmp_path / "scratch")
+    tracker = detectors.together([first.net, *(each.net for each in others)], recipe.tracking)
     for name in clips.names("test"):
         found = np.stack([each.xy for each in tracker.track_all(clips.frames(name))], axis=1)
         apart = np.linalg.norm(found[:, :, None] - truth[name][:, None], axis=-1).mean(0)  # (found, true) pixels
         assert min(apart[0, 0] + apart[1, 1], apart[0, 1] + apart[1, 0]) / 2 < 2.5
+
+
+@pytest.mark.parametrize("colours", [(worlds.RED,), (worlds.RED, worlds.BLUE), (worlds.RED, worlds.RED)])
+def test_all_balls_are_found_at_once_alike_or_not_their_number_not_given(tmp_path, colours):
+    clips, truth = orbits(tmp_path / "clips", colours)
+    recipe = params(steps=100, warm=60, rest=100, several=True)
+    learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    none_given = ObjectsParams(objects=None)
+    assert learn_others(clips, learned.net, none_given, recipe, COMPUTE, tmp_path / "scratch") == []
+    table, _ = track_tables(clips, detectors.together([learned.net], recipe.tracking), none_given, None)
+    for name in clips.names("test"):
+        found = tracks.positions(table, name)
+        assert found.shape == truth[name].shape
+        errors = metrics.distance(metrics.match(found, truth[name]), truth[name])
+        assert np.nanmean(errors) < 1.5  # pixels
+        assert np.isfinite(errors).mean() > 0.95
+    assert locked(learned.signals, recipe.lock)
+
+
+def test_a_ball_is_held_behind_a_post_and_beside_a_thing_that_never_moves(tmp_path):
+    clips, truth = orbits(tmp_path / "clips", post=True)
+    recipe = params(steps=100, warm=60, rest=100, several=True)
+    learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    table, _ = track_tables(
+        clips, detectors.together([learned.net], recipe.tracking), ObjectsParams(objects=None), None
+    )
+    for name in clips.names("test"):
+        errors = metrics.distance(tracks.positions(table, name), truth[name])
+        assert errors.shape[1] == 1
+        assert np.nanmean(errors) < 2  # pixels
+        assert np.isfinite(errors).mean() > 0.8
+
+
+def test_masking_one_after_the_other_has_to_know_how_many(tmp_path):
+    clips, _ = orbits(tmp_path / "clips")
+    recipe = params(steps=1, warm=1, rest=1)
+    first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    with pytest.raises(InputError, match="empty, but sequential masking has to know"):
+        learn_others(clips, first.net, ObjectsParams(objects=None), recipe, COMPUTE, tmp_path / "scratch")
+
+
+def test_more_objects_than_slots_are_refused(tmp_path):
+    clips, _ = orbits(tmp_path / "clips")
+    recipe = params(steps=1, warm=1, rest=1, several=True)
+    first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    with pytest.raises(InputError, match="asks for 4; the detector finds 3"):
+        learn_others(clips, first.net, ObjectsParams(objects=4), recipe, COMPUTE, tmp_path / "scratch")
 
 
 def test_more_objects_than_move_are_refused(tmp_path):
@@ -104,16 +171,17 @@ def test_more_objects_than_move_are_refused(tmp_path):
     recipe = params(steps=100, warm=60)
     first = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
     with pytest.raises(InputError, match=r"asks for more than 1 objects; beside the first 1 only .* of the motion"):
-        learn_others(clips, first.net, 2, recipe, COMPUTE, tmp_path / "scratch")
+        learn_others(clips, first.net, ObjectsParams(objects=2), recipe, COMPUTE, tmp_path / "scratch")
 
 
-def test_a_still_film_that_only_gets_brighter_is_not_locked_on(tmp_path):
+@pytest.mark.parametrize("several", [False, True])
+def test_a_still_film_that_only_gets_brighter_is_not_locked_on(tmp_path, several):
     rng = np.random.default_rng(0)
     ground = rng.uniform(60, 120, (worlds.HEIGHT, worlds.WIDTH, 3))
     ramp = np.linspace(0.8, 1.3, 24)[:, None, None, None]
     films = [(ground * ramp + rng.normal(0, 2, (24, *ground.shape))).clip(0, 255).astype(np.uint8) for _ in range(10)]
     clips = worlds.save_clips(tmp_path / "clips", films)
-    recipe = params(steps=60, warm=30)
+    recipe = params(steps=60, warm=30, several=several)
     learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
     assert not locked(learned.signals, recipe.lock)
 
@@ -146,13 +214,13 @@ def test_what_is_saved_is_what_was_learned(tmp_path):
     clips, _ = orbits(tmp_path / "clips")
     recipe = params(steps=5, warm=2, rest=5)
     learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
-    lessons.save_first(tmp_path / "first", clips, learned, recipe.lock)
-    lessons.save_all(tmp_path / "all", clips, tmp_path / "first", [learned], recipe.lock)
+    lessons.save_first(tmp_path / "first", clips, learned, recipe)
+    lessons.save_all(tmp_path / "all", clips, tmp_path / "first", [learned], recipe)
     assert len(detectors.load(tmp_path / "first" / detectors.WEIGHTS)) == 1
     pair = detectors.load(tmp_path / "all" / detectors.WEIGHTS)
     name = clips.names("test")[0]
-    table = detectors.track_table(clips, detectors.together(pair, recipe.readout, MaskParams(radius_px=8)))
-    alone = LearnedTracker(learned.net.detector, recipe.readout).track(clips.frames(name))
+    table, _ = track_tables(clips, detectors.together(pair, recipe.tracking), ObjectsParams(objects=2), None)
+    alone = LearnedTracker(learned.net.detector, recipe.tracking.readout).track(clips.frames(name))
     mine = table[(table["clip"] == name) & (table["object"] == 0)]
     np.testing.assert_array_equal(mine[["x", "y"]].to_numpy(), alone.xy)
     verdict = results.load_json(tmp_path / "all" / "verdict.json")

@@ -18,7 +18,7 @@ def test_a_second_repro_runs_nothing(project):
 
 
 def test_a_tracker_loss_weight_re_runs_the_tracker_and_not_ingest(project):
-    project.write({"tracker.recipes.lock.net.losses.entropy": 0.02})
+    project.write({"tracker.recipes.sequential.net.losses.entropy": 0.02})
     ran = project.repro()
     assert ran >= TRACKING | {"export_tracks@bowls", "train_predictor@bowls-dispnet", "report"}
     assert not ran & {"simulate@bowls", "ingest@bowls", "ground_truth@bowls", "train_supervised@bowls-dispnet"}
@@ -36,6 +36,18 @@ def test_predictor_code_re_runs_no_tracker_and_the_same_weights_stop_the_wave(pr
     ran = project.repro()
     assert ran >= PREDICTOR
     assert not ran & (TRACKING | {"ingest@bowls", "report"})
+
+
+def test_learned_flow_runs_when_asked_for_and_leaves_no_row_when_no_longer(project):
+    scores = project.root / "data/scores/bowls/trackers.json"
+    before = scores.read_bytes()
+    project.write({"run.flow": ["corrflow"]})
+    assert project.repro() == {"train_flow@corrflow", "flow_tracks@bowls-corrflow", "evaluate_trackers@bowls", "report"}
+    assert project.repro() == set()
+    project.write({"run.flow": []})
+    assert not project.repro() & {"train_flow@corrflow", "flow_tracks@bowls-corrflow", "baseline_tracks@bowls"}
+    assert (project.root / "data/baselines/bowls/corrflow").is_dir()  # what other runs left is not looked at
+    assert scores.read_bytes() == before
 
 
 def test_two_clean_runs_give_identical_metrics(project):

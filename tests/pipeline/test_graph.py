@@ -13,6 +13,7 @@ TRUTH = ("data/annotations", "data/truth", "data/baselines", "data/scores", "met
 MAY_READ_TRUTH = {
     "ground_truth",
     "baseline_tracks",
+    "flow_tracks",
     "evaluate_trackers",
     "evaluate_predictors",
     "train_supervised",

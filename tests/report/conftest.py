@@ -183,7 +183,9 @@ def build(root: Path, world: World) -> Project:
     _data_set(sources, world, "bowls", K=1, annotated=True, locked=True)
     _data_set(sources, world, "film", K=2, annotated=False, locked=False)
     _data_set(sources, world, "old", K=1, annotated=True, locked=True)
-    run = RunParams(datasets=["bowls", "film"], simulated=["bowls"], learned=list(world.learned), supervised=["bowls"])
+    run = RunParams(
+        datasets=["bowls", "film"], simulated=["bowls"], learned=list(world.learned), supervised=["bowls"], flow=[]
+    )
     film = FilmParams(clips=2, fps_at_most=30, kilobytes=900)
     shown = ReportParams(
         predictor="dispnet",

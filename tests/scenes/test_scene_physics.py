@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
+from physpipe.scenes.bowl import Bowl, BowlParams
 from physpipe.scenes.physics import DENSITY, LeftTerrainError, PhysicsParams, Start, Trajectory, roll
-from physpipe.scenes.terrain import Bowl, BowlParams
 
 RADIUS, FPS, G = 0.025, 240.0, 9.81
-BOWL = BowlParams(kind="bowl", rim_radius_m=(0.25, 0.31), depth_m=(0.2, 0.3), cut=0.75)
+BOWL = BowlParams(kind="bowl", fixed=False, rim_radius_m=(0.25, 0.31), depth_m=(0.2, 0.3), cut=0.75)
 LOSSLESS = PhysicsParams(
     gravity_m_s2=G, steps_per_frame=8, contact_s=0.006, friction=0, rolling_resistance_m=0, restitution=1
 )
@@ -18,7 +18,7 @@ def rolled(physics: PhysicsParams, seed: int, count: int = 1, frames: int = 252)
     azimuth = rng.uniform(0, 6) + np.arange(count) * 2 * np.pi / count
     foot = np.array([bowl.point(0.6, angle) for angle in azimuth])
     start = Start(foot, rng.uniform(0, 6, count), np.full(count, 0.6))
-    return bowl, roll(bowl, start, RADIUS, frames, FPS, physics)
+    return bowl, roll(bowl, start, np.full(count, RADIUS), frames, FPS, physics)
 
 
 def mass() -> float:
@@ -63,11 +63,12 @@ def test_ball_stays_on_the_surface() -> None:
 def test_small_swing_has_the_pendulums_period(friction: float, inertia: float) -> None:
     """A ball that rolls without slipping swings as a pendulum with 7/5 of its mass to move (1 when it slides)."""
     bowl = Bowl(
-        BowlParams(kind="bowl", rim_radius_m=(0.3, 0.3), depth_m=(0.1, 0.1), cut=0.75), np.random.default_rng(0)
+        BowlParams(kind="bowl", fixed=False, rim_radius_m=(0.3, 0.3), depth_m=(0.1, 0.1), cut=0.75),
+        np.random.default_rng(0),
     )
     start = Start(np.array([bowl.point(0.05, 0.3)]), np.zeros(1), np.zeros(1))
     physics = LOSSLESS.model_copy(update={"friction": friction})
-    trajectory = roll(bowl, start, RADIUS, 500, FPS, physics)
+    trajectory = roll(bowl, start, np.array([RADIUS]), 500, FPS, physics)
     bend = bowl._a2 / bowl._c - RADIUS  # metres, of the centre's path
     expected = 2 * np.pi * np.sqrt(inertia * bend / G)
     x = trajectory.xyz_m[:, 0, 0]
@@ -78,10 +79,13 @@ def test_small_swing_has_the_pendulums_period(friction: float, inertia: float) -
 
 def collide(restitution: float) -> tuple[np.ndarray, np.ndarray]:
     """Velocities before and after a central collision on level ground, weightless so that nothing else acts."""
-    bowl = Bowl(BowlParams(kind="bowl", rim_radius_m=(9, 9), depth_m=(1e-6, 1e-6), cut=0.1), np.random.default_rng(0))
+    bowl = Bowl(
+        BowlParams(kind="bowl", fixed=False, rim_radius_m=(9, 9), depth_m=(1e-6, 1e-6), cut=0.1),
+        np.random.default_rng(0),
+    )
     start = Start(np.array([[-0.1, 0.0], [0.1, 0.0]]), np.array([0.0, 0.0]), np.array([0.5, 0.0]))
     physics = LOSSLESS.model_copy(update={"restitution": restitution, "gravity_m_s2": 0, "steps_per_frame": 32})
-    velocity = np.diff(roll(bowl, start, RADIUS, 200, FPS, physics).xyz_m[..., 0], axis=0) * FPS
+    velocity = np.diff(roll(bowl, start, np.full(2, RADIUS), 200, FPS, physics).xyz_m[..., 0], axis=0) * FPS
     return velocity[0], velocity[-1]
 
 
@@ -92,8 +96,20 @@ def test_collision_keeps_momentum_and_parts_by_restitution(restitution: float) -
     assert (after[1] - after[0]) / (before[0] - before[1]) == pytest.approx(restitution, abs=0.05)
 
 
+def test_balls_of_two_sizes_keep_their_momentum() -> None:
+    """A heavy ball that hits a light one from behind, masses as the cubes of the radii, both on level ground."""
+    level = BowlParams(kind="bowl", fixed=False, rim_radius_m=(9, 9), depth_m=(1e-6, 1e-6), cut=0.1)
+    start = Start(np.array([[-0.1, 0.0], [0.1, 0.0]]), np.zeros(2), np.array([0.5, 0.0]))
+    physics = LOSSLESS.model_copy(update={"gravity_m_s2": 0, "steps_per_frame": 32})
+    radius = np.array([0.04, 0.02])
+    xyz = roll(Bowl(level, np.random.default_rng(0)), start, radius, 100, FPS, physics).xyz_m
+    before, after = (np.diff(xyz[..., 0], axis=0)[k] * FPS for k in (0, -1))
+    assert radius**3 @ after == pytest.approx(radius**3 @ before, rel=1e-3)
+    assert after[1] > after[0] > 0.25
+
+
 def test_ball_over_the_rim_is_told() -> None:
     bowl = Bowl(BOWL, np.random.default_rng(0))
     start = Start(np.array([bowl.point(0.8, 0.0)]), np.zeros(1), np.array([9.0]))
     with pytest.raises(LeftTerrainError):
-        roll(bowl, start, RADIUS, 252, FPS, LOSSLESS)
+        roll(bowl, start, np.array([RADIUS]), 252, FPS, LOSSLESS)

@@ -6,17 +6,18 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from simulated import of_the_project
 
-from physpipe.core import params
 from physpipe.core.errors import InputError
+from physpipe.scenes.balls import Ball
 from physpipe.scenes.film import Camera
+from physpipe.scenes.look import Light
 from physpipe.scenes.physics import DENSITY
-from physpipe.scenes.worlds import WorldParams, record, simulate, track
+from physpipe.scenes.render import Scene, draw_terrain
+from physpipe.scenes.worlds import Chances, WorldParams, draw_balls, record, simulate, surface_rng, terrain_of, track
 from stages.simulate import main
 
-PARAMS = Path(__file__).parents[2] / "params.yaml"
-PAPER_PX = {1: (20.0, 62.0), 2: (12.0, 93.0)}
-"""Degree of the polynomial: mean error at frames 20 and 40 that the paper prints for BowlS."""
+FIXED = ("poolr_sim", "bowlr_sim", "heightr_sim")
 
 
 def decode(video: bytes) -> np.ndarray:
@@ -24,47 +25,106 @@ def decode(video: bytes) -> np.ndarray:
         return np.stack([frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]).astype(float)
 
 
-def extrapolated(xy: np.ndarray, degree: int, frame: int) -> np.ndarray:
-    """(clips, 2) least-squares polynomial of the first 10 of (clips, F, 2) positions, at a later frame."""
-    weights = np.vander([frame], degree + 1) @ np.linalg.pinv(np.vander(np.arange(10.0), degree + 1))
-    return np.einsum("f,cfd->cd", weights[0], xy[:, :10])
-
-
-def filmed(world: WorldParams, number: int) -> np.ndarray:
-    """(F, K, 2) source pixels from the release on, the camera's wobble included, which no polynomial foresees."""
-    xyz = track(world, "bowls", number).xyz_m
-    return Camera(world.camera, len(xyz), np.random.default_rng(number)).project(xyz)
-
-
-def test_bowls_moves_as_hard_as_the_papers() -> None:
-    """What "error at T" means depends on the motion: both extrapolations must err as they did in the paper."""
-    bowls = params.read("datasets.bowls.simulate", WorldParams, PARAMS)
-    scale = 128 / params.read_value("datasets.bowls.ingest.crop", PARAMS)["width"]
-    xy = scale * np.stack([filmed(bowls, number)[:123:3, 0] for number in range(120)])
-    for degree, errors in PAPER_PX.items():
-        for frame, paper in zip((20, 40), errors, strict=True):
-            error = np.linalg.norm(extrapolated(xy, degree, frame) - xy[:, frame], axis=1).mean()
-            assert error == pytest.approx(paper, rel=0.15), (degree, frame)
-
-
-def test_bowls_without_friction_keeps_its_energy_within_one_percent() -> None:
-    bowls = params.read("datasets.bowls.simulate", WorldParams, PARAMS)
-    smooth = bowls.physics.model_copy(update={"friction": 0, "rolling_resistance_m": 0})
-    lossless, radius = bowls.model_copy(update={"physics": smooth}), bowls.balls.radius_m
+@pytest.mark.parametrize("name", ["bowls", "heights"])
+def test_energy_without_friction_is_kept_within_one_percent(name: str) -> None:
+    world = of_the_project(name)
+    smooth = world.physics.model_copy(update={"friction": 0, "rolling_resistance_m": 0})
+    lossless, radius = world.model_copy(update={"physics": smooth}), world.balls.radius_m[0]
     for number in range(12):
-        at_rest = DENSITY * 4 / 3 * np.pi * radius**3 * smooth.gravity_m_s2 * radius  # at the bottom of the bowl
-        energy = track(lossless, "bowls", number).energy_j - at_rest
+        at_rest = DENSITY * 4 / 3 * np.pi * radius**3 * smooth.gravity_m_s2 * radius  # where the ground is lowest
+        energy = track(lossless, name, number).energy_j - at_rest
         assert np.abs(energy / energy[0] - 1).max() < 0.01
 
 
-def test_most_pairs_of_balls_meet() -> None:
-    bowls2 = params.read("datasets.bowls2.simulate", WorldParams, PARAMS)
-    nearest = []
-    for number in range(40):
-        xyz = track(bowls2, "bowls2", number).xyz_m
-        nearest.append(np.linalg.norm(xyz[:, 0] - xyz[:, 1], axis=1).min() / bowls2.balls.radius_m)
-    assert np.mean(np.array(nearest) < 3) > 0.6  # centres within three radii: touching is two
-    assert min(nearest) > 1.5  # and never through each other
+@pytest.mark.parametrize(("name", "most"), [("bowls2", 0.6), ("heightr2_sim", 0.2)])
+def test_many_pairs_of_balls_meet(name: str, most: float) -> None:
+    world, gaps = of_the_project(name), []
+    for number in range(24):
+        radii = sum(ball.radius_m for ball in draw_balls(world, Chances.of(name, number).balls))
+        xyz = track(world, name, number).xyz_m
+        gaps.append(np.linalg.norm(xyz[:, 0] - xyz[:, 1], axis=1).min() / radii)
+    assert np.mean(np.array(gaps) < 1.05) > most  # distance of the centres over that of touching
+    assert min(gaps) > 0.75  # and never through each other
+
+
+def test_heights_differ_between_clips_and_fixed_ones_do_not() -> None:
+    """Terrains of all 24 clips looked at differ pairwise by more than 1 cm somewhere; a fixed set has one."""
+    side = np.linspace(-0.12, 0.12, 15)
+    x, y = np.meshgrid(side, side)
+    fresh, fixed = of_the_project("heights"), of_the_project("heightr_sim")
+    drawn = np.stack([terrain_of(fresh, Chances.of("heights", k)).height(x, y) for k in range(24)])
+    same = np.stack([terrain_of(fixed, Chances.of("heightr_sim", k)).height(x, y) for k in range(3)])
+    apart = np.abs(drawn[:, None] - drawn).max(axis=(2, 3)) + np.diag(np.full(len(drawn), np.inf))
+    assert apart.min() > 0.01
+    assert np.ptp(same, axis=0).max() == 0
+    other = terrain_of(fixed, Chances.of("heightr2_sim", 0)).height(x, y)
+    assert np.abs(other - same[0]).max() > 0.01
+
+
+@pytest.mark.parametrize("name", FIXED)
+def test_fixed_surface_looks_alike_in_every_clip(name: str) -> None:
+    """Under one lamp from one place, with the balls out of the way, two clips' first pictures are the same."""
+    world = of_the_project(name)
+    backgrounds = []
+    for number in (0, 1):
+        chances = Chances.of(name, number)
+        camera = Camera(world.camera.model_copy(update={"off_centre_px": 0}), 2, chances.film)
+        lamp = Light(np.array([0.0, 0.0, 1.0]))
+        terrain = terrain_of(world, chances)
+        backgrounds.append(draw_terrain(world.look, terrain, camera, lamp, surface_rng(world, chances)))
+    np.testing.assert_array_equal(*backgrounds)
+    assert backgrounds[0].std() > 3  # grey levels: and there is something to see
+
+
+def test_colours_and_radii_are_drawn_for_each_clip() -> None:
+    one, two, same = (of_the_project(name) for name in ("heightr_sim", "heightr2_sim", "heightr2_same_sim"))
+    drawn = [draw_balls(one, np.random.default_rng(k))[0] for k in range(60)]
+    assert {ball.rgb for ball in drawn} == set(one.palette)
+    low, high = one.balls.radius_m
+    assert all(low <= ball.radius_m <= high for ball in drawn)
+    assert np.ptp([ball.radius_m for ball in drawn]) > 0.8 * (high - low)
+    for k in range(20):
+        assert len({ball.rgb for ball in draw_balls(two, np.random.default_rng(k))}) == 2
+        assert len({ball.rgb for ball in draw_balls(same, np.random.default_rng(k))}) == 1
+    listed = of_the_project("bowls2")
+    assert [ball.rgb for ball in draw_balls(listed, np.random.default_rng(0))] == listed.palette[:2]
+
+
+@pytest.mark.parametrize("name", ["poolr_sim", "bowlr_sim", "heightr_sim", "heightr2_sim", "heightr2_same_sim"])
+def test_stand_ins_have_the_papers_balls(name: str) -> None:
+    """Seven colours, 3.2 to 6.4 px in radius in a 128-px frame."""
+    world = of_the_project(name)
+    scale = world.camera.pixels_per_metre * 128 / min(world.camera.width, world.camera.height)
+    np.testing.assert_allclose(scale * np.array(world.balls.radius_m), [3.2, 6.4], atol=0.05)
+    assert len(set(world.palette)) == 7
+
+
+@pytest.mark.parametrize("name", ["heights", *FIXED])
+def test_drawn_ball_is_where_truth_says(name: str) -> None:
+    """The middle of what the ball's colour changes in the picture is the projected truth, smeared or not, to 0.1 px."""
+    world = of_the_project(name)
+    world = world.model_copy(update={"moving_frames": 40, "look": world.look.model_copy(update={"ambient": 1})})
+    chances = Chances.of(name, 0)
+    radius = draw_balls(world, chances.balls)[0].radius_m
+    xyz = track(world, name, 0).xyz_m
+    camera = Camera(world.camera, len(xyz), np.random.default_rng(0))
+    xy = camera.project(xyz)
+    scene = Scene(world.look, terrain_of(world, chances), camera, np.random.default_rng(1), np.random.default_rng(2))
+    red, black = (np.stack(list(scene.film(xyz, xy, [Ball(rgb, radius)])))[..., 0] for rgb in ((255, 0, 0), (0, 0, 0)))
+    cover = (red - black).astype(float)
+    rows, columns = np.indices(cover.shape[1:])
+    seen = np.stack([(cover * columns).sum((1, 2)), (cover * rows).sum((1, 2))], axis=1) / cover.sum((1, 2))[:, None]
+    assert np.linalg.norm(seen - xy[:, 0], axis=1).max() < 0.1
+
+
+def test_ball_starts_clear_of_the_cushions() -> None:
+    world = of_the_project("poolr_sim")
+    corner = world.model_copy(update={"balls": world.balls.model_copy(update={"start_level": (0.0, 1.0)})})
+    a, b = np.array(corner.terrain.half_sides_m)
+    for number in range(30):
+        radius = draw_balls(corner, Chances.of("corner", number).balls)[0].radius_m
+        x, y = np.abs(track(corner.model_copy(update={"moving_frames": 2}), "corner", number).xyz_m[0, 0, :2])
+        assert max(x - a, y - b) < -1.2 * radius
 
 
 def test_clip_is_the_same_whenever_it_is_made(world: WorldParams) -> None:
@@ -97,7 +157,8 @@ def test_track_is_the_motion_of_the_film(world: WorldParams) -> None:
 def test_truth_is_where_the_ball_is_seen(world: WorldParams) -> None:
     """In the decoded film, wobble and all, the middle of what is redder than the rest is the truth to 0.25 px."""
     flat = world.look.model_copy(update={"ambient": 1, "gloss": 0})  # else the lit side pulls the middle
-    one = world.model_copy(update={"balls": world.balls.model_copy(update={"rgb": [(255, 30, 20)]}), "look": flat})
+    ball = world.balls.model_copy(update={"count": 1})
+    one = world.model_copy(update={"balls": ball, "palette": [(255, 30, 20)], "look": flat})
     recording = record(one, "seen", 0)
     frames = decode(recording.video)
     assert len(frames) == len(recording.xy)
@@ -108,11 +169,20 @@ def test_truth_is_where_the_ball_is_seen(world: WorldParams) -> None:
     assert np.percentile(error, 95) < 0.25
 
 
+def sections(name: str, world: dict) -> dict:
+    """Sections of params.yaml that describe `world`, with every preset called `mine`."""
+    kinds = {"terrain": "terrains", "physics": "physics", "palette": "palettes", "look": "looks", "camera": "cameras"}
+    own = {"balls": world["balls"], "still_frames": world["still_frames"], "size": "tiny"}
+    size = {"tiny": {key: world[key] for key in ("clips", "moving_frames")}}
+    simulated = own | {"sizes": size} | dict.fromkeys(kinds, "mine")
+    presets = {plural: {"mine": world[key]} for key, plural in kinds.items()}
+    return {"presets": presets, "datasets": {name: {"simulate": simulated}}}
+
+
 def test_stage_writes_videos_and_truth(world: WorldParams, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PHYSPIPE_WORKERS", "1")
-    section = {"datasets": {"tiny": {"simulate": world.model_dump(mode="json")}}}
-    Path("params.yaml").write_text(yaml.safe_dump(section))
+    Path("params.yaml").write_text(yaml.safe_dump(sections("tiny", world.model_dump(mode="json"))))
     main("tiny", tmp_path / "raw/tiny", tmp_path / "annotations/tiny")
     truth = pd.read_csv("annotations/tiny/reference.csv")
     assert list(truth.columns) == ["source", "object", "frame", "x", "y"]

@@ -51,7 +51,7 @@ def table(**positions: np.ndarray) -> pd.DataFrame:
 
 
 def score(clips: ClipSet, truth: pd.DataFrame, **tables: pd.DataFrame) -> tuple[dict, pd.DataFrame]:
-    return score_trackers(clips, truth, tables, {"ours": True}, PARAMS, BALL)
+    return score_trackers(clips, truth, tables, {"ours": {"locked": True, "score": 0.2}}, PARAMS, BALL)
 
 
 def test_a_tracker_fed_the_truth_scores_exactly_zero(clips: ClipSet) -> None:
@@ -126,9 +126,39 @@ def test_without_truth_every_figure_is_null(clips: ClipSet, tmp_path: Path) -> N
         assert read[name].keys() == full.keys()
         assert read[name].pop("clips") == read[name].pop("frames") == 0
         assert read[name].pop("locked") is locked
+        assert read[name].pop("score") == (0.2 if locked else None)
         assert set(read[name].values()) == {None}
 
 
 def test_one_object_has_no_swaps_to_speak_of(clips: ClipSet) -> None:
     single = table(a=paths()[:, :1])
     assert np.isnan(score(clips, single, ours=single)[0]["ours"]["swaps"])
+
+
+def test_figures_of_identity_are_null_for_one_object(clips: ClipSet) -> None:
+    single = table(a=paths()[:, :1])
+    ours = score(clips, single, ours=single)[0]["ours"]
+    for key in ("hota", "idf1", "id_switches", "idf1_unflagged", "flagged"):
+        assert np.isnan(ours[key]), key
+
+
+def test_identity_counts_a_track_too_many_that_errors_pass_over(clips: ClipSet) -> None:
+    truth = table(a=paths(), b=paths())
+    spare = np.concatenate([np.full((T, 1, 2), [60.0, 2.0]), paths()], axis=1)
+    ours = score(clips, truth, ours=table(a=spare, b=paths()))[0]["ours"]
+    assert (ours["mean_px"], ours["lost"], ours["swaps"]) == (0, 0, 0)
+    assert ours["idf1"] == pytest.approx(2 * 4 * T / (4 * T + 5 * T))
+    missing = score(clips, truth, ours=table(a=paths()))[0]["ours"]
+    assert (missing["mean_px"], missing["lost"]) == (0, 0.5)
+    assert missing["idf1"] == pytest.approx(2 * 2 * T / (4 * T + 2 * T))
+
+
+def test_a_swap_that_the_tracker_called_doubtful_is_forgiven_outside_flagged_spans(clips: ClipSet) -> None:
+    exchanged = paths()
+    exchanged[8:] = exchanged[8:, ::-1]
+    status = np.full((T, 2), "tracked", object)
+    status[8, 1] = "ambiguous"
+    doubted = tracks.rows("a", np.arange(T) / 80, exchanged, np.ones((T, 2)), status)
+    ours = score(clips, table(a=paths()), ours=doubted)[0]["ours"]
+    assert (ours["idf1"], ours["id_switches"], ours["idf1_unflagged"]) == (0.5, 2, 1)
+    assert ours["flagged"] == 1 / T

@@ -9,20 +9,22 @@ from physpipe.core.determinism import torch_generator
 from physpipe.tracknet.detector import DetectorParams
 from physpipe.tracknet.discriminator import DiscriminatorParams
 from physpipe.tracknet.heatmap import distribution
-from physpipe.tracknet.model import BottleneckParams, LossParams, Moments, TrackNet, TrackNetParams, masked
+from physpipe.tracknet.model import BottleneckParams, LossParams, TrackNet, TrackNetParams
+from physpipe.tracknet.moments import Moments, masked
 
 
 def params(end_px: float = 0.5, warm_start_steps: int = 0) -> TrackNetParams:
     return TrackNetParams(
         detector=DetectorParams(width=4, layers=1, stride=4),
         discriminator=DiscriminatorParams(width=8, shape_only=True),
-        losses=LossParams(causality=1, entropy=0.01, equivariance=0.001),
+        losses=LossParams(causality=1, entropy=0.01, equivariance=0.001, motion=0),
         bottleneck=BottleneckParams(start_px=0.02 if end_px else 0, end_px=end_px, growth=1.5, winning=0.5),
         negatives=4,
         turned_share=0.5,
         mirrored=True,
         flicker=0.1,
         warm_start_steps=warm_start_steps,
+        peaks=None,
     )
 
 

@@ -1,0 +1,176 @@
+"""What each loss, and each ingredient of the default recipe, is worth: `make ablation`.
+
+    python -m experiments.ablation --set bowlr_sim --seeds 0,1,2 --jobs 1
+
+Writes metrics/ablation.json and docs/results/ablation.png. Variants that have run are not run again.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import yaml
+from scipy.stats import spearmanr
+
+from experiments.queue import run_missing
+from experiments.records import CommandError, Experiment, Result, read_results, tracker_only
+from experiments.spread import Row, over_seeds
+
+RECIPES = {"losses": "sequential", "ingredients": "joint"}
+"""Part of the ablation to its recipe: the losses' is the one nearest to the paper's, the ingredients' the default."""
+TRACKER = "unsupervised_unrefined"
+"""Row that tells: refinement would hide what is lost."""
+LOSSES = {"disc": "causality", "ent": "entropy", "siam": "equivariance"}
+"""The paper's names of the losses, and ours."""
+ALL_LOSSES = "+".join(LOSSES)
+CONSTANT, FULL = "const", "full recipe"
+INGREDIENTS: dict[str, tuple[str, ...]] = {
+    "noise bottleneck": ("net.bottleneck.start_px=0", "net.bottleneck.end_px=0"),
+    "shape only": ("net.discriminator.shape_only=false",),
+    "many shuffles": ("net.negatives=0",),
+    "warm start": ("net.warm_start_steps=0",),
+    "mirrors": ("net.mirrored=false",),
+    "flicker": ("net.flicker=0",),
+    "several strides": ("moments.strides=[1]",),
+    "two starts": ("starts=1",),
+    "strong equivariance": ("net.losses.equivariance=0.001",),
+    "motion prior": ("net.losses.motion=0",),
+}
+"""Ingredient of the recipe to what takes it away, or puts the paper's value in its place."""
+FIGURES = ("mean_px", "p99_px", "off_track", "locked")
+COLOURS = {"mean_px": "#3b6ea5", "p99_px": "#c9d6e4"}
+
+
+def variants() -> dict[str, dict[str, tuple[str, ...]]]:
+    """Part of the ablation to its rows to the overrides of each."""
+    losses = {}
+    for count in range(1, len(LOSSES) + 1):
+        for kept in combinations(LOSSES, count):
+            dropped = [ours for name, ours in LOSSES.items() if name not in kept]
+            losses["+".join(kept)] = tuple(f"net.losses.{each}=0" for each in dropped)
+    without = {f"without {name}": keys for name, keys in INGREDIENTS.items()}
+    parts = {"losses": losses, "ingredients": {**without, FULL: ()}}
+    return {
+        part: {
+            row: (f"tracker.recipe={RECIPES[part]}", *(f"tracker.recipes.{RECIPES[part]}.{key}" for key in keys))
+            for row, keys in rows.items()
+        }
+        for part, rows in parts.items()
+    }
+
+
+def experiments(dataset: str, simulated: bool, seeds: Sequence[int]) -> dict[tuple[str, str, int], Experiment]:
+    """(part, row, seed) to its experiment."""
+    return {
+        (part, row, seed): Experiment(
+            f"ablation-{dataset}-{part}-{row.replace('+', '-').replace(' ', '-')}-seed{seed}",
+            (*tracker_only(dataset, seed, simulated), "baselines.names=[centre]", *overrides),
+        )
+        for part, rows in variants().items()
+        for row, overrides in rows.items()
+        for seed in seeds
+    }
+
+
+def collect(
+    wanted: Mapping[tuple[str, str, int], Experiment], results: Mapping[Experiment, Result], dataset: str
+) -> dict[str, Any]:
+    """What metrics/ablation.json holds: part to row to figures, null for a row that lacks a seed; and `choice`."""
+    parts: dict[str, Any] = {"dataset": dataset, "choice": {}}
+    for part, rows in variants().items():
+        parts[part] = {}
+        for row in rows:
+            mine = {key[2]: results.get(each) for key, each in wanted.items() if key[:2] == (part, row)}
+            found = {seed: result for seed, result in mine.items() if result}
+            parts[part][row] = _row(found, dataset, TRACKER) if len(found) == len(mine) else None
+        runs = [
+            results[each].trackers[dataset][TRACKER]
+            for key, each in wanted.items()
+            if key[0] == part and each in results
+        ]
+        parts["choice"][part] = choice(runs)
+    full = {key[2]: results[each] for key, each in wanted.items() if key[1] == ALL_LOSSES and each in results}
+    parts["losses"][CONSTANT] = _row(full, dataset, "centre") if full else None
+    return parts
+
+
+def choice(runs: Sequence[Row]) -> Row:
+    """How well the score that chooses starts and checkpoints without labels orders runs by their true mean error:
+    Spearman's rank correlation, null below three runs that have both.
+    """
+    known = [(row["score"], row["mean_px"]) for row in runs if None not in (row.get("score"), row.get("mean_px"))]
+    correlation = spearmanr(*zip(*known, strict=True)).statistic if len(known) > 2 else None
+    return {"runs": len(known), "spearman": None if correlation is None else round(float(correlation), 3)}
+
+
+def _row(found: Mapping[int, Result], dataset: str, tracker: str) -> Row:
+    figures = {seed: {key: each.trackers[dataset][tracker].get(key) for key in FIGURES} for seed, each in found.items()}
+    commits = sorted({each.commit for each in found.values()})
+    return {**over_seeds(figures), "seeds": sorted(found), "commit": ", ".join(commits)}
+
+
+def draw(path: Path, parts: Mapping[str, Any]) -> None:
+    """Bars of the mean error and, behind them, of the 99th percentile: the constant and the paper's combinations, then
+    our recipe less one ingredient each, the worst first.
+    """
+    losses = {name: parts["losses"][name] for name in (CONSTANT, *variants()["losses"])}
+    ingredients = sorted(_known(parts["ingredients"]).items(), key=lambda item: -item[1]["mean_px"])
+    figure, axes = plt.subplots(1, 2, figsize=(10, 3.8), layout="constrained")
+    _bars(axes[0], _known(losses), "Losses")
+    _bars(axes[1], dict(ingredients), "Ingredients of the recipe")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=130, metadata={"Software": None})
+    plt.close(figure)
+
+
+def _known(rows: Mapping[str, Row | None]) -> dict[str, Row]:
+    return {name: row for name, row in rows.items() if row and row["mean_px"] is not None}
+
+
+def _bars(axes: Any, rows: Mapping[str, Row], title: str) -> None:
+    names = list(rows)
+    for key, label in (("p99_px", "99th percentile"), ("mean_px", "mean")):
+        axes.barh(names, [row[key] for row in rows.values()], color=COLOURS[key], label=label)
+    figures = [f"{row['mean_px']:.2f} / {row['p99_px']:.1f}" for row in rows.values()]
+    axes.bar_label(axes.containers[0], figures, padding=3, fontsize=8)
+    axes.invert_yaxis()
+    axes.margins(x=0.3)
+    axes.set(title=title, xlabel="error, px: mean / 99th percentile", xscale="symlog")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def main() -> None:
+    """Runs what is missing, then writes what there is; exits with an error when a variant failed."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--set", default="bowlr_sim", help="data set, a section under `datasets`")
+    options.add_argument("--seeds", default="0,1,2")
+    options.add_argument("--jobs", type=int, default=1, help="experiments at once")
+    options.add_argument("--collect", action="store_true", help="run nothing, write what there is")
+    chosen = options.parse_args()
+    known = yaml.safe_load(Path("params.yaml").read_text())["datasets"]
+    if chosen.set not in known:
+        sys.exit(f"params.yaml has no data set `{chosen.set}`; it has {', '.join(known)}")
+    seeds = [int(word) for word in chosen.seeds.split(",")]
+    wanted = experiments(chosen.set, "simulate" in known[chosen.set], seeds)
+    try:
+        failed = {} if chosen.collect else run_missing(list(wanted.values()), chosen.jobs)
+        parts = collect(wanted, read_results(list(wanted.values())), chosen.set)
+    except CommandError as error:
+        sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("stopped; the same command goes on from here")
+    Path("metrics/ablation.json").write_text(json.dumps(parts, indent=1) + "\n")
+    draw(Path("docs/results/ablation.png"), parts)
+    for experiment, reason in failed.items():
+        print(f"failed {experiment.label}: {reason}", file=sys.stderr)
+    sys.exit(bool(failed))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+"""Experiments: their names, the commands behind them, and what they measured, as Git and DVC keep it."""
+
+import hashlib
+import json
+import platform
+import re
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import Any, NamedTuple
+
+CODE = ["physpipe", "stages", "data", "dvc.yaml", "params.yaml"]
+"""What the results of an experiment depend on."""
+COSTS = Path(".scratch/experiments")
+Runner = Callable[..., str]
+
+
+class CommandError(Exception):
+    """A command failed; holds what it printed."""
+
+
+class Experiment(NamedTuple):
+    """One variant of the pipeline."""
+
+    label: str
+    """Letters, digits, `_` and `-`."""
+    overrides: tuple[str, ...]
+    """Of params.yaml, as `dvc exp run -S` takes them."""
+
+    @property
+    def name(self) -> str:
+        """Its name in DVC: other overrides under the same label are another experiment."""
+        return f"{self.label}-{hashlib.sha256(chr(10).join(self.overrides).encode()).hexdigest()[:6]}"
+
+
+class Result(NamedTuple):
+    """What one experiment measured."""
+
+    trackers: dict[str, dict[str, dict[str, Any]]]
+    """metrics/trackers.json: data set to tracker to figures."""
+    commit: str
+    """Of the code, shortened."""
+    finished: str
+    """ISO date and time."""
+    machine: str | None
+    """Null when the experiment was not run from this folder."""
+    time_s: float | None
+    """Wall-clock seconds, to within a poll of the queue; few where DVC had most stages in its cache."""
+
+
+def command(*words: str) -> str:
+    """What a command prints; raises CommandError with what it said when it fails."""
+    # Files, not pipes: DVC's workers inherit them, and a pipe ends only with its last holder.
+    with TemporaryFile("w+") as printed, TemporaryFile("w+") as complained:
+        code = subprocess.run(words, stdout=printed, stderr=complained).returncode
+        printed.seek(0)
+        complained.seek(0)
+        told = printed.read()
+        if code:
+            raise CommandError(f"`{' '.join(words[:4])}` failed: {(complained.read() or told).strip()[-2000:]}")
+    return told
+
+
+def tracker_only(dataset: str, seed: int, simulated: bool) -> tuple[str, ...]:
+    """Overrides that leave nothing to run but one data set's trackers."""
+    return (
+        f"run.datasets=[{dataset}]",
+        f"run.simulated=[{dataset if simulated else ''}]",
+        "run.learned=[]",
+        "run.supervised=[]",
+        "report.predictor=persistence",
+        f"compute.seed={seed}",
+    )
+
+
+def finished(run: Runner = command) -> dict[str, str]:
+    """Name to revision of every experiment whose code is today's."""
+    today: dict[str, bool] = {}
+    revisions = {}
+    for line in run("git", "for-each-ref", "--format=%(objectname) %(refname)", "refs/exps").splitlines():
+        found = re.fullmatch(r"(\w+) refs/exps/(\w{2})/(\w{38})/(.+)", line)
+        if found:
+            revision, base, name = found[1], found[2] + found[3], found[4]
+            if base not in today:
+                today[base] = not run("git", "diff", "--name-only", base, "HEAD", "--", *CODE).strip()
+            if today[base]:
+                revisions[name] = revision
+    return revisions
+
+
+def read_results(wanted: Sequence[Experiment], run: Runner = command) -> dict[Experiment, Result]:
+    """Results of those that have finished on today's code."""
+    revisions = finished(run)
+    return {each: _read(each, revisions[each.name], run) for each in wanted if each.name in revisions}
+
+
+def _read(experiment: Experiment, revision: str, run: Runner) -> Result:
+    trackers = json.loads(run("git", "show", f"{revision}:metrics/trackers.json"))
+    commit, date = run("git", "show", "--no-patch", "--format=%p %cI", revision).split()[-2:]
+    note = COSTS / f"{experiment.name}.json"
+    cost = json.loads(note.read_text()) if note.is_file() else {"machine": None, "time_s": None}
+    return Result(trackers, commit, date, **cost)
+
+
+def note_cost(name: str, time_s: float | None) -> None:
+    """Keeps what the experiment `name`, which ran here, has cost."""
+    COSTS.mkdir(parents=True, exist_ok=True)
+    (COSTS / f"{name}.json").write_text(json.dumps({"machine": machine(), "time_s": time_s}))
+
+
+def machine() -> str:
+    """What this runs on: system, processor architecture, Python."""
+    return f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"

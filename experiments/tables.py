@@ -1,0 +1,111 @@
+"""The tables of docs/results.md, written from the JSON beside them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from experiments.spread import Row
+
+OURS = ("unsupervised_joint", "unsupervised")
+"""Our trackers, the default recipe's first."""
+LEARNED = ("unsupervised", "flow_")
+"""Beginnings of the names of trackers that were trained."""
+NO_TOOLS = ("centre", "persistence")
+"""Rows that stand still, to compare with."""
+COLUMNS = {
+    "mean_px": "mean px",
+    "paper_mean_px": "paper",
+    "var_px2": "variance px²",
+    "paper_var_px2": "paper",
+    "p99_px": "99 % px",
+    "bias_px": "bias px",
+    "jitter_px": "jitter px",
+    "off_track": "off track",
+    "lost": "lost",
+    "delta_avg": "δ avg",
+    "hota": "HOTA",
+    "idf1": "IDF1",
+    "idf1_unflagged": "IDF1 unflagged",
+    "id_switches": "switches",
+    "locked": "locked",
+    "frames_per_s": "frames/s",
+}
+HEAD = """# Results
+
+Written by `make results` from docs/results/trackers.json, which holds more. Mean over seeds, with the worst seed in
+brackets where seeds differ; test clips only, in pixels of a 128-px frame. "paper" is the figure printed in Ehrhardt et
+al. 2018; for a simulated stand-in, that of the real set.
+
+`unsupervised` finds one object after the other and is told how many there are; `unsupervised_joint` finds all at once
+and is told nothing; `_unrefined` are the same before positions are moved to the objects' middles. The others learn
+nothing, but for the flow of `flow_*`. `lab`, `lucas_kanade`, `*_simple` and the `*_blob` of a flow are told where each
+object is when it first shows, `trackpy` how large it is.
+"""
+
+
+def page(table: Mapping[str, Mapping[str, Row]], unrun: Mapping[str, str], speed_machine: str | None) -> str:
+    """The whole page: a section a data set, then those that have no results with the reason."""
+    parts = [HEAD]
+    if speed_machine:
+        parts.append(f"Frames/s on one thread of {speed_machine}.\n")
+    parts += [_section(name, rows) for name, rows in table.items()]
+    if unrun:
+        parts.append("## Not run\n\n" + "".join(f"- `{name}`: {reason}\n" for name, reason in unrun.items()))
+    return "\n".join(parts)
+
+
+def verdict(rows: Mapping[str, Row]) -> str:
+    """Which tool that learns nothing is best in mean and in 99th percentile, and whether ours is."""
+    tools = {name: row for name, row in rows.items() if not name.startswith(LEARNED) and name not in NO_TOOLS}
+    ours = _ours(rows)
+    sentences = []
+    for key, what in (("mean_px", "mean"), ("p99_px", "99th percentile")):
+        known = {name: row[key] for name, row in tools.items() if row.get(key) is not None}
+        if not known or ours.get(key) is None:
+            continue
+        best = min(known, key=lambda name: known[name])
+        wins = "ours is as good or better" if ours[key] <= known[best] else f"`{best}` wins"
+        figures = f"{_number(known[best])} px of `{best}` beside {_number(ours[key])} px of ours"
+        lost = rows[best].get("lost")
+        sentences.append(f"In {what} {wins}: {figures}" + (f" (it lost {lost:.0%} of the frames)." if lost else "."))
+    return " ".join(sentences) or "No tool that learns nothing has errors to compare with."
+
+
+def _section(name: str, rows: Mapping[str, Row]) -> str:
+    columns = {key: head for key, head in COLUMNS.items() if any(row.get(key) is not None for row in rows.values())}
+    order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
+    lines = [_line(["tracker", *columns.values()]), _line(["---", *["---:"] * len(columns)])]
+    lines += [_line([f"`{each}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
+    about = _ours(rows) or next(iter(rows.values()))
+    seeds = ", ".join(map(str, about["seeds"]))
+    time = "" if about["time_s"] is None else f", {about['time_s']:.0f} s the longest seed"
+    told = f"Seeds {seeds}; commit {about['commit']}; {about['machine']}{time}; finished {about['finished'][:10]}."
+    return f"## {name}\n\n{told}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+
+
+def _ours(rows: Mapping[str, Row]) -> Row:
+    return next((rows[name] for name in OURS if name in rows), {})
+
+
+def _rank(row: Row) -> float:
+    return float("inf") if row.get("mean_px") is None else row["mean_px"]
+
+
+def _line(cells: list[str]) -> str:
+    return f"| {' | '.join(cells)} |\n"
+
+
+def _cell(key: str, row: Row) -> str:
+    """The mean, with the worst seed where it differs, and the interval over clips of the mean error."""
+    value, worst = row.get(key), row.get("worst", {}).get(key)
+    text = _number(value)
+    if key == "mean_px" and row.get("mean_px_low") is not None:
+        text += f" [{_number(row['mean_px_low'])}–{_number(row['mean_px_high'])}]"
+    return text if worst is None or _number(worst) == _number(value) else f"{text} ({_number(worst)})"
+
+
+def _number(value: Any) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.0f}" if isinstance(value, int) or abs(value) >= 100 else f"{value:.2f}"

@@ -1,0 +1,1 @@
+"""CorrFlow: dense optical flow by a small network with correlation layers, coarse to fine."""

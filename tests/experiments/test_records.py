@@ -1,0 +1,34 @@
+"""Names of experiments and what is read back of them."""
+
+import pytest
+from pretended_dvc import BASE, TRACKERS, Pretended
+
+from experiments.records import CommandError, Experiment, command, machine, note_cost, read_results, tracker_only
+
+ONE, TWO = Experiment("one", ("x=1",)), Experiment("two", ("x=2", "y=[]"))
+
+
+def test_an_experiment_s_name_tells_its_overrides_apart():
+    assert ONE.name.startswith("one-")
+    assert ONE.name == Experiment("one", ("x=1",)).name
+    assert len({ONE.name, Experiment("one", ("x=2",)).name, Experiment("one", ("x=1", "y=1")).name}) == 3
+
+
+def test_results_carry_commit_date_machine_and_time():
+    note_cost(ONE.name, 12.0)
+    here = read_results([ONE, TWO], Pretended(finished=[(ONE.name, BASE)]))[ONE]
+    assert (here.trackers, here.commit, here.finished) == (TRACKERS, BASE[:7], "2026-01-02T03:04:05+00:00")
+    assert (here.machine, here.time_s) == (machine(), 12)
+    elsewhere = read_results([TWO], Pretended(finished=[(TWO.name, BASE)]))[TWO]
+    assert (elsewhere.machine, elsewhere.time_s) == (None, None)
+
+
+def test_only_one_data_set_s_trackers_are_left_to_run():
+    assert "run.simulated=[bowls]" in tracker_only("bowls", 1, simulated=True)
+    film = tracker_only("tray", 2, simulated=False)
+    assert {"run.datasets=[tray]", "run.simulated=[]", "run.learned=[]", "compute.seed=2"} <= set(film)
+
+
+def test_a_command_that_fails_says_why():
+    with pytest.raises(CommandError, match="git no-such-command"):
+        command("git", "no-such-command")
