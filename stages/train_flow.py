@@ -5,6 +5,7 @@ from pathlib import Path
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
 from physpipe.core.params import read
+from physpipe.flownet.classical import DisParams, FarnebackParams, classical_flows
 from physpipe.io.checkpoints import forget, scratch
 from physpipe.learning.flow import FlowParams, learn_flow
 from physpipe.learning.flow_verdict import save_flow
@@ -16,7 +17,8 @@ def main(name: str, out: Path) -> None:
     prepare(compute)
     folder = scratch("train_flow", [params, compute], [])
     net, curve = learn_flow(params, compute.seed, folder / "training.pt")
-    save_flow(out, net, curve, params.pairs, params.verdict)
+    untrained = classical_flows(read("baselines.dis", DisParams), read("baselines.farneback", FarnebackParams))
+    save_flow(out, net, curve, params.pairs, params.verdict, untrained)
     forget(folder)
 
 

@@ -51,7 +51,6 @@ def params(steps: int) -> FlowParams:
         "patience": 100,
         "precision": "float32",
     }
-    farneback = {"scale": 0.5, "levels": 2, "window_px": 9, "iterations": 2, "neighbours_px": 5, "sigma_px": 1.1}
     return FlowParams.model_validate(
         {
             "network": {
@@ -65,6 +64,6 @@ def params(steps: int) -> FlowParams:
             "pairs": pairs,
             "fit": fit,
             "valid_pairs": 8,
-            "verdict": {"pairs": 6, "shown": 2, "dis": "medium", "farneback": farneback},
+            "verdict": {"pairs": 6, "shown": 2},
         }
     )

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from physpipe.baselines.blobs import blobs, kept
-from physpipe.baselines.flows import Flow
 from physpipe.core.params import Section
+from physpipe.flownet.classical import Flow
 from physpipe.trackers.base import Trajectory, required
 
 

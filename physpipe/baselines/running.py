@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from physpipe.baselines.flows import Remembered
 from physpipe.baselines.zoo import BASELINES, Finder, Follower, Settings
 from physpipe.core.errors import InputError
 from physpipe.core.parallel import in_parallel
+from physpipe.flownet.classical import Remembered
 from physpipe.io import tracks
 from physpipe.io.annotations import Annotations, Box
 from physpipe.io.clips import ClipSet

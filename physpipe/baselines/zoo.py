@@ -9,13 +9,13 @@ from pydantic import Field, field_validator
 from physpipe.baselines.background import BackgroundParams, Model, median_blobs, subtracted_blobs
 from physpipe.baselines.constant import Centre, Persistence
 from physpipe.baselines.dense_flow import FlowBlob, FlowParams, FlowSimple
-from physpipe.baselines.flows import DisParams, FarnebackParams, Flow, dis, farneback
 from physpipe.baselines.linking import Find, FinderParams, FinderTracker
 from physpipe.baselines.lucas_kanade import LucasKanade, LucasKanadeParams
 from physpipe.baselines.spots import TrackpyParams, odd_diameter_px, spots
 from physpipe.baselines.template import TemplateParams, TemplateTracker
 from physpipe.core.errors import InputError
 from physpipe.core.params import Section
+from physpipe.flownet.classical import DisParams, FarnebackParams, Flow, classical_flows
 from physpipe.io.annotations import Box
 from physpipe.trackers.base import JointTracker, Tracker
 
@@ -64,7 +64,7 @@ class Settings(NamedTuple):
 
 def known_flows(params: BaselineParams) -> dict[str, Flow]:
     """The flows that need no training; picklable, as every flow must be that is put beside them."""
-    return {"dis": partial(dis, params=params.dis), "farneback": partial(farneback, params=params.farneback)}
+    return classical_flows(params.dis, params.farneback)
 
 
 class Follower(NamedTuple):

@@ -3,8 +3,6 @@
 The paper names this as its main limitation: objects had to differ in colour and were learned one after the other.
 """
 
-from functools import partial
-
 import numpy as np
 import torch
 from numpy.typing import NDArray
@@ -15,8 +13,28 @@ from physpipe.trackers.linking import LinkParams, Track, link
 from physpipe.trackers.refinement import RefineParams, Searcher
 from physpipe.tracknet.places import PeakParams, around, peaks
 
-LOOK_FRAMES = 20
-"""Latest detections of a track whose mean look it is sought by."""
+
+class Seeker:
+    """Looks for tracks that no detection claims by the look that they had in a clip."""
+
+    def __init__(self, frames: NDArray[np.uint8], refinement: RefineParams, links: LinkParams):
+        self.frames, self.refinement, self.links = frames, refinement, links
+        self.known: dict[tuple[int, ...], tuple[Track, Searcher]] = {}
+
+    def __call__(self, track: Track, frame: int) -> tuple[NDArray[np.floating], float] | None:
+        """The track's (2,) place at `frame` and how well it fits; None where nothing does."""
+        expected = track.expected(frame, self.links.speed_frames)
+        return self._searcher(track).near(self.frames[frame], expected, self.links.search_px)
+
+    def _searcher(self, track: Track) -> Searcher:
+        """Made once for all frames in which the track goes undetected."""
+        latest = tuple(track.detected[-self.links.look_frames :])
+        key = (id(track), *latest)
+        if key not in self.known:  # holds the track, too, so that no other takes its id
+            places = dict(zip(track.frames, track.xy, strict=True))
+            xy = np.stack([places[frame] for frame in latest])
+            self.known[key] = track, Searcher(self.frames[list(latest)], xy, self.refinement)
+        return self.known[key][1]
 
 
 class PeakTracker:
@@ -32,22 +50,17 @@ class PeakTracker:
     ) -> list[Trajectory]:
         """The surest `objects` trajectories in (T, H, W, 3) frames, or as many as there are, the surest first.
 
-        A score is the share of the heat map; `ignore` (T, H, W) marks pixels where nothing may be found.
+        A score is the share of the heat map; `ignore` (T, H, W) marks pixels where nothing may be found. Every clip
+        holds something that moves, for ingest keeps nothing else: where no track can be made, the highest peak of each
+        frame stands in, ambiguous throughout.
         """
         places, masses = self.detect(frames, ignore)
         held = masses >= self.peaks.least_mass
         xy = [each[kept] for each, kept in zip(places, held, strict=True)]
         mass = [each[kept] for each, kept in zip(masses, held, strict=True)]
-        return link(xy, mass, self.links, partial(self._seek, frames))[:objects]
-
-    def _seek(self, frames: NDArray[np.uint8], track: Track, frame: int) -> tuple[NDArray[np.floating], float] | None:
-        """Where a track that no detection claims is by its look; None without refinement, which knows looks."""
-        if self.refinement is None:
-            return None
-        known = np.isin(track.frames, track.detected[-LOOK_FRAMES:])
-        seen, xy = np.array(track.frames)[known], np.stack(track.xy)[known]
-        searcher = Searcher(frames[seen], xy, self.refinement)
-        return searcher.near(frames[frame], track.expected(frame), self.links.search_px)
+        seek = (lambda track, frame: None) if self.refinement is None else Seeker(frames, self.refinement, self.links)
+        found = link(xy, mass, self.links, seek)
+        return (found or [Trajectory(places[:, 0], masses[:, 0], np.ones(len(frames), bool))])[:objects]
 
     def detect(
         self, frames: NDArray[np.uint8], ignore: NDArray[np.bool_] | None = None

@@ -13,8 +13,6 @@ from physpipe.core.params import Section
 from physpipe.trackers.base import Trajectory
 
 Floats = NDArray[np.floating]
-SPAN = 3
-"""Frames over which a track's speed is taken."""
 
 
 class LinkParams(Section):
@@ -32,6 +30,10 @@ class LinkParams(Section):
     """Two tracks that would cost less than this more when exchanged are ambiguous there."""
     search_px: int = Field(ge=1)
     """Farthest along x and y that a track without a detection of its own is sought from where it was going."""
+    look_frames: int = Field(ge=1)
+    """Latest detections of a track whose mean look it is sought by."""
+    speed_frames: int = Field(ge=1)
+    """Frames back over which a track's speed is taken."""
     still_px: float = Field(ge=0)
     """Root mean square distance from its mean place below which a track is still: more likely a mark on the ground that
     the camera's wobble moves than an object."""
@@ -53,9 +55,9 @@ class Track:
         """Whether it may still be seen at `frame`."""
         return frame - self.detected[-1] <= min(memory_frames, len(self.detected)) + 1
 
-    def expected(self, frame: int) -> Floats:
-        """(2,) where it is at `frame` if it goes on as it went."""
-        first = max(-SPAN, -len(self.xy))
+    def expected(self, frame: int, speed_frames: int) -> Floats:
+        """(2,) where it is at `frame` if it goes on as it went in the last `speed_frames`."""
+        first = max(-speed_frames - 1, -len(self.xy))
         ago = self.frames[-1] - self.frames[first]
         speed = (self.xy[-1] - self.xy[first]) / ago if ago else np.zeros(2)
         return self.xy[-1] + speed * (frame - self.frames[-1])
@@ -119,7 +121,8 @@ def _assigned(living: list[Track], xy: Floats, frame: int, params: LinkParams) -
     """Track to detection, by number; notes on the tracks where an exchange would cost little more."""
     if not living or not len(xy):
         return {}
-    cost = np.linalg.norm(np.stack([track.expected(frame) for track in living])[:, None] - xy, axis=-1)
+    expected = np.stack([track.expected(frame, params.speed_frames) for track in living])
+    cost = np.linalg.norm(expected[:, None] - xy, axis=-1)
     gates = params.gate_px * np.sqrt([frame - track.frames[-1] for track in living])
     # Beyond the gate all pairs are alike, so that one of them cannot drive a good pair apart.
     assigned = zip(*linear_sum_assignment(np.minimum(cost, 4 * gates.max())), strict=True)
@@ -138,9 +141,13 @@ def _seek_others(living: list[Track], taken: dict[int, Floats], frame: int, para
     A place that is taken belongs to another object, unless that track began after this one was lost from sight.
     """
     sought = {row: seek(living[row], frame) for row in _alone(living, taken)}
-    for row, found in sorted(sought.items(), key=lambda item: _surprise(living[item[0]], item[1], frame)):
-        if found is None:
-            continue
+    found_near = {row: found for row, found in sought.items() if found is not None}
+
+    def surprise_px(row: int) -> float:
+        return float(np.linalg.norm(living[row].expected(frame, params.speed_frames) - found_near[row][0]))
+
+    for row in sorted(found_near, key=surprise_px):
+        found = found_near[row]
         rivals = [other for other, xy in taken.items() if np.linalg.norm(found[0] - xy) < params.apart_px]
         if not rivals:
             living[row].add(frame, *found, detected=False)
@@ -150,11 +157,6 @@ def _seek_others(living: list[Track], taken: dict[int, Floats], frame: int, para
                 living[row].go_on_as(living[other])
                 taken[row] = taken.pop(other)
                 break
-
-
-def _surprise(track: Track, found: tuple[Floats, float] | None, frame: int) -> float:
-    """Pixels between where a track was going and where it was found."""
-    return float(np.linalg.norm(track.expected(frame) - found[0])) if found else np.inf
 
 
 def _alone(living: list[Track], placed: Container[int]) -> list[int]:
@@ -168,7 +170,7 @@ def _merged(living: list[Track], pairs: dict[int, int], xy: Floats, frame: int, 
     merged = set()
     for row, number in pairs.items():
         for other in _alone(living, pairs):
-            if np.linalg.norm(living[other].expected(frame) - xy[number]) <= params.gate_px:
+            if np.linalg.norm(living[other].expected(frame, params.speed_frames) - xy[number]) <= params.gate_px:
                 merged.add(row)
                 living[row].doubts.add(frame)
                 living[other].doubts.add(frame)

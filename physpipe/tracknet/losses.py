@@ -6,9 +6,6 @@ from torch import Tensor
 
 from physpipe.tracknet.discriminator import MOMENTS, Discriminator, shuffles
 
-NEARBY_CELLS = 5
-"""Side of the square of cells in which motion is compared: about an object and its surroundings."""
-
 
 def causality(judge: Discriminator, xy: Tensor, weights: Tensor, negatives: int, generator: torch.Generator) -> Tensor:
     """L_disc of (N, 5, 2) positions with (N,) weights that sum to 1; the natural order and its shuffles weigh one half
@@ -41,16 +38,17 @@ def motion_target(frames: Tensor, background: Tensor, stride: int) -> Tensor:
     return above / above.flatten(1).sum(1).clamp_min(1e-12)[:, None, None]
 
 
-def even_motion_target(frames: Tensor, background: Tensor, stride: int, even: float) -> Tensor:
+def even_motion_target(frames: Tensor, background: Tensor, stride: int, even: float, nearby_cells: int) -> Tensor:
     """As `motion_target`, but objects of little contrast weigh nearly as much as others.
 
-    Motion is taken relative to the strongest nearby, so that an object's peak stays as sharp as it is; `even` is the
-    share of the strongest motion in a frame, on average over the batch, at which a peak counts half. A frame in which
-    nothing moves, less than half a cell in all, has a sum below 1, so that its noise teaches little.
+    Motion is taken relative to the strongest in a square of `nearby_cells`, so that an object's peak stays as sharp as
+    it is; `even` is the share of the strongest motion in a frame, on average over the batch, at which a peak counts
+    half. A frame in which nothing moves, less than half a cell in all, has a sum below 1, so that its noise teaches
+    little.
     """
     above = _standing_out(frames, background, stride)
     strongest = above.flatten(1).max(1).values.mean().clamp_min(1e-12)
-    nearby = F.max_pool2d(above[:, None], NEARBY_CELLS, stride=1, padding=NEARBY_CELLS // 2)[:, 0]
+    nearby = F.max_pool2d(above[:, None], nearby_cells, stride=1, padding=nearby_cells // 2)[:, 0]
     counted = above / (nearby + even * strongest)
     return counted / counted.flatten(1).sum(1).clamp_min(0.5)[:, None, None]
 

@@ -106,7 +106,9 @@ class TrackNet(nn.Module):
 
     def _motion(self, batch: Moments, logits: Tensor) -> Tensor:
         several, stride = self.params.peaks, self.detector.stride
-        target = batch.motion(stride) if several is None else batch.even_motion(stride, several.even)
+        target = (
+            batch.motion(stride) if several is None else batch.even_motion(stride, several.even, several.nearby_cells)
+        )
         return motion_cross_entropy(logits, batch.outside_mask(target))
 
     def _paper(

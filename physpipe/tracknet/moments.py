@@ -23,9 +23,9 @@ class Moments:
         """(B * 5, h, w) share of each frame's motion residual in each cell, ignored ones included."""
         return motion_target(*self._frames_and_backgrounds(), stride)
 
-    def even_motion(self, stride: int, even: float) -> Tensor:
+    def even_motion(self, stride: int, even: float, nearby_cells: int) -> Tensor:
         """As `motion`, evened out as by `even_motion_target`."""
-        return even_motion_target(*self._frames_and_backgrounds(), stride, even)
+        return even_motion_target(*self._frames_and_backgrounds(), stride, even, nearby_cells)
 
     def _frames_and_backgrounds(self) -> tuple[Tensor, Tensor]:
         return self.frames.flatten(0, 1), self.background.repeat_interleave(self.frames.shape[1], 0)

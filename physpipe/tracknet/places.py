@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import torch
 import torch.nn.functional as F
-from pydantic import Field
+from pydantic import Field, field_validator
 from torch import Tensor
 
 from physpipe.core.params import Section
@@ -25,6 +25,15 @@ class PeakParams(Section):
     """Share of the heat map that a peak must hold to be an object."""
     even: float = Field(gt=0, le=1)
     """Share of the strongest motion at which a peak counts half, so that faint objects are learned, too."""
+    nearby_cells: int = Field(ge=1)
+    """Side of the square of cells within which motion is compared, odd: about an object and its surroundings."""
+
+    @field_validator("nearby_cells")
+    @classmethod
+    def _odd(cls, cells: int) -> int:
+        if cells % 2 == 0:
+            raise ValueError("must be odd, so that a cell stands in the middle")
+        return cells
 
 
 class Places(NamedTuple):

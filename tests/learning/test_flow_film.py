@@ -3,31 +3,26 @@
 import cv2
 import numpy as np
 import pytest
+import small_flow
 from pydantic import ValidationError
 
 from physpipe.core.determinism import torch_generator
 from physpipe.learning.flow_film import Pair, PairParams, as_batch, draw_pairs
 
+SMALL = small_flow.params(1).pairs
 LOOK = {
     "surface_grey": [90, 160],
     "tint": 30,
     "mottle": 0.12,
     "mottle_px": 16,
-    "dye": [1, 1, 1],
-    "texture": None,
-    "contour_m": 0.08,
     "contour_contrast": 0.15,
-    "rim": 0.05,
     "rim_brightness": 1.15,
     "table_brightness": 0.55,
-    "light_tilt_deg": [10, 40],
-    "ambient": 0.45,
-    "gloss": 80,
     "shadow": 0.5,
-    "shadow_softness": 0.6,
 }
 PARAMS = PairParams.model_validate(
-    {
+    SMALL.model_dump()
+    | {
         "size": 96,
         "balls": [1, 3],
         "radius_px": [4, 7],
@@ -38,10 +33,9 @@ PARAMS = PairParams.model_validate(
         "shutter_moments": 5,
         "drift": 0.15,
         "noise": [1, 6],
-        "pixels_per_metre": 112,
         "hill_m": [0, 0.15],
         "hill_px": 48,
-        "look": LOOK,
+        "look": SMALL.look.model_dump() | LOOK,
     }
 )
 

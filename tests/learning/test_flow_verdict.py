@@ -8,6 +8,7 @@ from small_flow import params
 
 from physpipe.core.determinism import torch_generator
 from physpipe.flownet import weights
+from physpipe.flownet.classical import DisParams, FarnebackParams, classical_flows
 from physpipe.flownet.network import CorrFlow
 from physpipe.io import results
 from physpipe.learning import flow_verdict
@@ -15,6 +16,10 @@ from physpipe.learning.flow_film import draw_pairs
 from physpipe.learning.flow_verdict import colour_wheel, estimates, save_flow, sheet, verdict
 
 PARAMS = params(3)
+CLASSICAL = classical_flows(
+    DisParams(finest_scale=0, patch_px=4, stride_px=2, refinements=0),
+    FarnebackParams(levels=2, window_px=5, rounds=2, neighbours_px=5, spread_px=1.1),
+)
 PAIRS = draw_pairs(PARAMS.pairs, 6, torch_generator(0))
 
 
@@ -32,7 +37,7 @@ def test_the_true_flow_has_no_error_and_no_flow_errs_by_the_motion():
 
 
 def test_every_method_gives_a_flow_of_every_pair():
-    found = estimates(untrained(), PAIRS, PARAMS.verdict)
+    found = estimates(untrained(), PAIRS, CLASSICAL)
     assert set(found) == {"corrflow", "zero", "dis", "farneback"}
     for flows in found.values():
         assert [each.shape for each in flows] == [(32, 32, 2)] * 6
@@ -49,7 +54,9 @@ def test_colours_tell_direction_and_length():
 
 def test_a_folder_holds_weights_curve_picture_and_verdict(tmp_path):
     net = untrained()
-    save_flow(tmp_path / "flow", net, pd.DataFrame({"step": [1], "valid": [2.5]}), PARAMS.pairs, PARAMS.verdict)
+    save_flow(
+        tmp_path / "flow", net, pd.DataFrame({"step": [1], "valid": [2.5]}), PARAMS.pairs, PARAMS.verdict, CLASSICAL
+    )
     names = {path.name for path in (tmp_path / "flow").iterdir()}
     assert names == {weights.WEIGHTS, flow_verdict.CURVE, flow_verdict.PICTURE, flow_verdict.VERDICT}
     errors = results.load_json(tmp_path / "flow" / flow_verdict.VERDICT)

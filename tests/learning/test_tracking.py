@@ -53,7 +53,9 @@ def params(steps: int, warm: int, rest: int = 40, several: bool = False) -> Trac
         mirrored=True,
         flicker=0.1,
         warm_start_steps=warm,
-        peaks=PeakParams(slots=3, apart_px=7, window_px=6, least_mass=0.15, even=0.02) if several else None,
+        peaks=PeakParams(slots=3, apart_px=7, window_px=6, least_mass=0.15, even=0.02, nearby_cells=5)
+        if several
+        else None,
     )
     recipe = RecipeParams(
         net=net,
@@ -71,7 +73,15 @@ def params(steps: int, warm: int, rest: int = 40, several: bool = False) -> Trac
             readout=ReadoutParams(window_px=9, batch_frames=32),
             mask=MaskParams(radius_px=8),
             link=LinkParams(
-                gate_px=8, apart_px=2, memory_frames=3, least_share=0.5, doubt_px=2, still_px=1, search_px=5
+                gate_px=8,
+                apart_px=2,
+                memory_frames=3,
+                least_share=0.5,
+                doubt_px=2,
+                still_px=1,
+                search_px=5,
+                look_frames=10,
+                speed_frames=2,
             ),
             refine=None,
         ),

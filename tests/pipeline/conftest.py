@@ -31,7 +31,6 @@ TINY = {
     "datasets.bowls.ingest.clip_frames": 26,
     "datasets.bowls.ingest.min_frames": 26,
     "datasets.bowls.predict.horizon": 6,
-    "tracker.recipe": "sequential",  # always finds something, however little it has learned
     "tracker.recipes.joint.starts": 1,
     "tracker.recipes.joint.start.steps": 6,
     "tracker.recipes.joint.rest.steps": 4,

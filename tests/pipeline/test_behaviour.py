@@ -18,7 +18,7 @@ def test_a_second_repro_runs_nothing(project):
 
 
 def test_a_tracker_loss_weight_re_runs_the_tracker_and_not_ingest(project):
-    project.write({"tracker.recipes.sequential.net.losses.entropy": 0.02})
+    project.write({"tracker.recipes.joint.net.losses.entropy": 0.02})
     ran = project.repro()
     assert ran >= TRACKING | {"export_tracks@bowls", "train_predictor@bowls-dispnet", "report"}
     assert not ran & {"simulate@bowls", "ingest@bowls", "ground_truth@bowls", "train_supervised@bowls-dispnet"}

@@ -5,7 +5,17 @@ import pytest
 
 from physpipe.trackers.linking import LinkParams, Track, link
 
-LINKS = LinkParams(gate_px=6, apart_px=2, memory_frames=4, least_share=0.3, doubt_px=3, still_px=2, search_px=5)
+LINKS = LinkParams(
+    gate_px=6,
+    apart_px=2,
+    memory_frames=4,
+    least_share=0.3,
+    doubt_px=3,
+    still_px=2,
+    search_px=5,
+    look_frames=10,
+    speed_frames=2,
+)
 T = 30
 
 
@@ -129,7 +139,7 @@ def test_objects_that_touch_and_look_like_one_are_sought_apart_and_are_ambiguous
     truth = {0: first, 1: second}
 
     def by_look(track: Track, frame: int) -> tuple[np.ndarray, float] | None:
-        expected = track.expected(frame)
+        expected = track.expected(frame, 2)
         nearest = min(truth, key=lambda k: np.linalg.norm(truth[k][frame] - expected))
         return (truth[nearest][frame], 0.5) if alike else None
 

@@ -93,7 +93,7 @@ def two_of_unlike_contrast() -> tuple[torch.Tensor, torch.Tensor]:
 
 def test_a_faint_object_weighs_nearly_as_much_as_another_when_evened_out():
     frames, background = two_of_unlike_contrast()
-    plain, evened = motion_target(frames, background, 4), even_motion_target(frames, background, 4, 0.02)
+    plain, evened = motion_target(frames, background, 4), even_motion_target(frames, background, 4, 0.02, 5)
     assert plain[0, 6:8, 10:12].sum().item() == pytest.approx(1 / (1 + 3**4), rel=0.05)  # the fourth power of contrast
     assert 0.25 < evened[0, 6:8, 10:12].sum().item() < 0.5
     assert evened.sum().item() == pytest.approx(1)
@@ -102,7 +102,7 @@ def test_a_faint_object_weighs_nearly_as_much_as_another_when_evened_out():
 def test_a_frame_in_which_nothing_moves_teaches_little_beside_one_in_which_something_does():
     frames, background = two_of_unlike_contrast()
     noise = background + 0.01 * torch.randn(background.shape, generator=torch_generator(0))
-    both = even_motion_target(torch.cat([frames, noise]), torch.cat([background] * 2), 4, 0.02)
+    both = even_motion_target(torch.cat([frames, noise]), torch.cat([background] * 2), 4, 0.02, 5)
     assert both[0].sum().item() == pytest.approx(1)
     assert both[1].sum().item() < 0.05
 

@@ -8,7 +8,7 @@ from physpipe.core.determinism import torch_generator
 from physpipe.tracknet.heatmap import entropy, expected_position
 from physpipe.tracknet.places import PeakParams, around, linked, peaks, taken, whole
 
-PEAKS = PeakParams(slots=3, apart_px=9, window_px=7, least_mass=0.1, even=0.02)
+PEAKS = PeakParams(slots=3, apart_px=9, window_px=7, least_mass=0.1, even=0.02, nearby_cells=5)
 
 
 def bump(x: float, y: float, height: float = 1.0) -> torch.Tensor:

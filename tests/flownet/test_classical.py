@@ -1,12 +1,15 @@
 """Flow between two frames."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from worlds import ball_film
 
-from physpipe.baselines.flows import Flow, Remembered
-from physpipe.baselines.zoo import BaselineParams, known_flows
+from physpipe.core.params import read
+from physpipe.flownet.classical import DisParams, FarnebackParams, Flow, Remembered, classical_flows
 
+PARAMS = Path(__file__).parents[2] / "params.yaml"
 H, W = 60, 90
 
 
@@ -16,9 +19,12 @@ def drawn(frame: np.ndarray, following: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", ["dis", "farneback"])
-def test_a_whole_pixel_s_shift_is_the_flow(name: str, params: BaselineParams) -> None:
+def test_a_whole_pixel_s_shift_is_the_flow(name: str) -> None:
     frame = ball_film(np.array([[[45.0, 30.0]]]), 6.0, seed=3, height=H, width=W)[0]
-    field = known_flows(params)[name](frame, np.roll(frame, (1, 2), axis=(0, 1)))
+    flows = classical_flows(
+        read("baselines.dis", DisParams, PARAMS), read("baselines.farneback", FarnebackParams, PARAMS)
+    )
+    field = flows[name](frame, np.roll(frame, (1, 2), axis=(0, 1)))
     assert field.shape == (H, W, 2)
     assert field.dtype == np.float32
     np.testing.assert_allclose(np.median(field, axis=(0, 1)), [2, 1], atol=0.1)  # pixels

@@ -1,6 +1,7 @@
-"""Dense optical flow between two frames: by OpenCV, or by anything else of the same form."""
+"""Dense optical flow between two frames that needs no training, by OpenCV, and what every dense flow is."""
 
 from collections.abc import Callable
+from functools import partial
 
 import cv2
 import numpy as np
@@ -54,6 +55,11 @@ class Remembered:
         if pair not in self.known:
             self.known[pair] = self.flow(frame, following)
         return self.known[pair]
+
+
+def classical_flows(dis_params: DisParams, farneback_params: FarnebackParams) -> dict[str, Flow]:
+    """The flows by name; picklable."""
+    return {"dis": partial(dis, params=dis_params), "farneback": partial(farneback, params=farneback_params)}
 
 
 def dis(frame: NDArray[np.uint8], following: NDArray[np.uint8], params: DisParams) -> NDArray[np.float32]:
