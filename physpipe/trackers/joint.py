@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from physpipe.trackers.base import Trajectory
 from physpipe.trackers.learned import LearnedTracker
-from physpipe.trackers.linking import LinkParams, Track, link
+from physpipe.trackers.linking import LinkParams, link
 from physpipe.trackers.refinement import RefineParams, Searcher
+from physpipe.trackers.track import Track
 from physpipe.tracknet.places import PeakParams, around, peaks
 
 

@@ -51,12 +51,12 @@ class Look(NamedTuple):
     """(3,) weights of L, a and b."""
     template: Floats
     """(P, P) that mix around the middle."""
+    disc: Floats
+    """(P, P) 1 where the two are compared, 0 in the corners."""
 
     def fit(self, patch: Floats, search_px: int) -> tuple[Floats, float]:
         """(2,) offset from the middle of a LAB `patch` at which it fits best, and how well; -1 at the rim."""
-        half = len(self.template) // 2
-        disc = (_distances(half) <= half + 0.5).astype(np.float32)
-        return _fit(patch @ self.mix, self.template, disc, search_px)
+        return _fit(patch @ self.mix, self.template, self.disc, search_px)
 
 
 class Searcher:
@@ -108,8 +108,9 @@ def _mean_look(patches: Floats, offsets: Floats, params: RefineParams) -> Look:
     radius = _radius(profile)
     mix = _telling_colours(looks, distance, radius)
     half = int(np.clip(round(params.extent * radius) + 1, 3, params.reach_px))
-    template = np.interp(_distances(half), np.arange(len(profile)), profile @ mix).astype(np.float32)
-    return Look(mix, template)
+    near = _distances(half)
+    template = np.interp(near, np.arange(len(profile)), profile @ mix).astype(np.float32)
+    return Look(mix, template, (near <= half + 0.5).astype(np.float32))
 
 
 def _shifted(patch: Floats, offset: Floats, half: int) -> Floats:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from physpipe.trackers.linking import LinkParams, Track, link
+from physpipe.trackers.linking import LinkParams, link
+from physpipe.trackers.track import Track
 
 LINKS = LinkParams(
     gate_px=6,
