@@ -4,9 +4,9 @@ from pathlib import Path
 
 from physpipe.core.command import run
 from physpipe.core.params import read, read_value
-from physpipe.core.prediction import BASELINES, PredictParams
 from physpipe.io import forecasts, results, tracks
 from physpipe.io.clips import ClipSet
+from physpipe.predictors.horizon import BASELINES, PredictParams
 from physpipe.scoring.predictors import EvaluatePredictorsParams, score_predictors
 
 

@@ -7,8 +7,9 @@ from physpipe.core.determinism import ComputeParams, prepare
 from physpipe.core.params import read
 from physpipe.io.checkpoints import forget, scratch
 from physpipe.io.clips import ClipSet
-from physpipe.learning.lessons import save_all
-from physpipe.learning.tracking import TrackerParams, learn_others
+from physpipe.tracker_learning.others import learn_others
+from physpipe.tracker_learning.recipe import TrackerParams
+from physpipe.tracker_learning.saving import save_all
 from physpipe.trackers import detectors
 from physpipe.trackers.tables import ObjectsParams
 

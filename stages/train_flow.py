@@ -5,10 +5,10 @@ from pathlib import Path
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
 from physpipe.core.params import read
+from physpipe.flow_learning.flow import FlowParams, learn_flow
+from physpipe.flow_learning.verdict import save_flow
 from physpipe.flownet.classical import DisParams, FarnebackParams, classical_flows
 from physpipe.io.checkpoints import forget, scratch
-from physpipe.learning.flow import FlowParams, learn_flow
-from physpipe.learning.flow_verdict import save_flow
 
 
 def main(name: str, out: Path) -> None:

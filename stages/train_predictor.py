@@ -5,13 +5,13 @@ from pathlib import Path
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
 from physpipe.core.params import read
-from physpipe.core.prediction import PredictParams
 from physpipe.io import tracks
 from physpipe.io.checkpoints import forget, scratch
 from physpipe.io.clips import ClipSet
-from physpipe.learning.predicting import learn_predictor, predictor_class, save_predictor
 from physpipe.learning.training import FitParams
-from physpipe.learning.windows import WindowParams
+from physpipe.predictor_learning.predicting import learn_predictor, predictor_class, save_predictor
+from physpipe.predictor_learning.windows import WindowParams
+from physpipe.predictors.horizon import PredictParams
 
 
 def main(name: str, predictor: str, clips: Path, found: Path, out: Path) -> None:

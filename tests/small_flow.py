@@ -1,6 +1,6 @@
 """Params of the smallest flow training, shared by tests."""
 
-from physpipe.learning.flow import FlowParams
+from physpipe.flow_learning.flow import FlowParams
 
 
 def params(steps: int) -> FlowParams:

@@ -10,15 +10,16 @@ from dvc.utils.hydra import apply_overrides
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
 from physpipe.core.params import read, read_value
-from physpipe.core.prediction import PredictParams
+from physpipe.flow_learning.film import as_batch, draw_pairs
+from physpipe.flow_learning.flow import FlowParams
 from physpipe.flownet.network import CorrFlow
 from physpipe.ingest.dataset import IngestParams
-from physpipe.learning.flow import FlowParams
-from physpipe.learning.flow_film import as_batch, draw_pairs
-from physpipe.learning.tracking import ObjectsParams, TrackerParams
+from physpipe.predictors.horizon import PredictParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.scenes.presets import PresetsParams, SimulateParams
+from physpipe.tracker_learning.recipe import TrackerParams
+from physpipe.trackers.tables import ObjectsParams
 from physpipe.tracknet.model import TrackNet
 from physpipe.tracknet.moments import Moments
 

@@ -1,1 +1,1 @@
-"""L4: data for learning, and the one loop that fits every model."""
+"""L4: the one loop that fits every model."""

@@ -1,1 +1,1 @@
-"""L5: metrics files, figures, overlays and the page."""
+"""L6: metrics files, figures, overlays and the page."""

@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from physpipe.core.prediction import BASELINES
+from physpipe.predictors.horizon import BASELINES
 from physpipe.report import colours
 from physpipe.report.run import SUPERVISIONS
 

@@ -8,7 +8,7 @@ from physpipe.io import checkpoints
 from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
 from physpipe.trackers.linking import LinkParams
-from physpipe.trackers.refinement import RefineParams
+from physpipe.trackers.look import RefineParams
 from physpipe.trackers.sequential import MaskParams, SequentialTracker
 from physpipe.tracknet.model import TrackNet, TrackNetParams
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from physpipe.trackers.base import Trajectory
 from physpipe.trackers.learned import LearnedTracker
 from physpipe.trackers.linking import LinkParams, link
-from physpipe.trackers.refinement import RefineParams, Searcher
+from physpipe.trackers.look import RefineParams
+from physpipe.trackers.refinement import Searcher
 from physpipe.trackers.track import Track
 from physpipe.tracknet.places import PeakParams, around, peaks
 

@@ -15,7 +15,8 @@ from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers.base import Trajectory
 from physpipe.trackers.joint import PeakTracker
-from physpipe.trackers.refinement import RefineParams, refined
+from physpipe.trackers.look import RefineParams
+from physpipe.trackers.refinement import refined
 from physpipe.trackers.sequential import SequentialTracker
 
 

@@ -1,12 +1,11 @@
 """The unsupervised tracker while it learns: detector, discriminator and the schedule that makes them lock."""
 
-import math
-
 import torch
 from pydantic import Field
 from torch import Tensor, nn
 
 from physpipe.core.params import Section
+from physpipe.tracknet.bottleneck import Bottleneck, BottleneckParams
 from physpipe.tracknet.detector import Detector, DetectorParams
 from physpipe.tracknet.discriminator import Discriminator, DiscriminatorParams
 from physpipe.tracknet.heatmap import distribution
@@ -14,9 +13,6 @@ from physpipe.tracknet.losses import causality, causality_by_coin, motion_cross_
 from physpipe.tracknet.moments import Moments, masked
 from physpipe.tracknet.places import PeakParams, Places, around, linked, peaks, taken, whole
 from physpipe.tracknet.turns import turned, turned_along, turned_back
-
-COIN_NATS = math.log(2)
-"""Loss of a discriminator that cannot tell."""
 
 
 class LossParams(Section):
@@ -30,19 +26,6 @@ class LossParams(Section):
     """Weight of L_siam (squared pixels)."""
     motion: float = Field(ge=0)
     """Weight of the heat map's cross-entropy with the motion residual after the warm start, nats; 0 = none (paper)."""
-
-
-class BottleneckParams(Section):
-    """Noise on the positions that the discriminator sees; flat heat maps cannot carry a signal through it (ours)."""
-
-    start_px: float = Field(ge=0)
-    """Standard deviation at the first step."""
-    end_px: float = Field(ge=0)
-    """Largest standard deviation; 0 switches the noise off and every loss to its full weight at once."""
-    growth: float = Field(gt=1)
-    """Factor a step while the discriminator wins; its inverse while it loses."""
-    winning: float = Field(gt=0)
-    """Running L_disc in nats below which the discriminator wins (a coin has 0.693)."""
 
 
 class TrackNetParams(Section):
@@ -69,8 +52,6 @@ class TrackNetParams(Section):
 class TrackNet(nn.Module):
     """Detector and discriminator with their losses; what is learned without labels."""
 
-    sigma: Tensor
-    running: Tensor
     steps: Tensor
 
     def __init__(self, params: TrackNetParams, frame_size: float):
@@ -78,15 +59,13 @@ class TrackNet(nn.Module):
         self.params = params
         self.detector = Detector(params.detector)
         self.judge = Discriminator(params.discriminator, frame_size)
-        self.register_buffer("sigma", torch.tensor(params.bottleneck.start_px))
-        self.register_buffer("running", torch.tensor(COIN_NATS))
+        self.bottleneck = Bottleneck(params.bottleneck)
         self.register_buffer("steps", torch.tensor(0))
 
     def restart(self) -> None:
         """Sets the schedule back to the first step; the weights stay."""
         self.steps.zero_()
-        self.sigma.fill_(self.params.bottleneck.start_px)
-        self.running.fill_(COIN_NATS)
+        self.bottleneck.restart()
 
     def loss(self, batch: Moments, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """The warm start's loss in the first steps, the paper's three afterwards."""
@@ -120,10 +99,10 @@ class TrackNet(nn.Module):
         shares = self.shares(found.mass)
         spread = (shares * found.spread).sum()
         siamese = self._equivariance(frames, found, batch.ignored, generator)
-        self._adapt(order.item())
-        weigh, ramp = self.params.losses, self.ramp()
+        self.bottleneck.adapt(order.item())
+        weigh, ramp = self.params.losses, self.bottleneck.ramp()
         loss = weigh.causality * order + ramp * (weigh.entropy * spread + weigh.equivariance * siamese)
-        parts = {"order_nats": order, "entropy_nats": spread, "siamese_px2": siamese, "sigma_px": self.sigma}
+        parts = {"order_nats": order, "entropy_nats": spread, "siamese_px2": siamese, "sigma_px": self.bottleneck.sigma}
         if weigh.motion:
             parts["motion_nats"] = self._motion(batch, logits)
             loss = loss + weigh.motion * parts["motion_nats"]
@@ -150,8 +129,7 @@ class TrackNet(nn.Module):
         return taken(xy, order).transpose(1, 2).flatten(0, 1), weights.flatten()
 
     def _order_loss(self, xy: Tensor, weights: Tensor, generator: torch.Generator) -> Tensor:
-        if self.params.bottleneck.end_px:
-            xy = xy + self.sigma * torch.randn(xy.shape, generator=generator).to(xy)
+        xy = self.bottleneck(xy, generator)
         if self.params.negatives == 0:
             return causality_by_coin(self.judge, xy, weights, generator)
         return causality(self.judge, xy, weights, self.params.negatives, generator)
@@ -173,16 +151,3 @@ class TrackNet(nn.Module):
         heat = distribution(masked(self.detector(turned(frames, turns, mirrored)), hidden))
         seen = self.places(heat, turned_along(xy.detach(), turns, mirrored, H, W)).xy
         return (turned_back(seen, turns, mirrored, H, W) - xy).square().sum(-1)
-
-    def ramp(self) -> Tensor:
-        """How much of the sharpening losses' weight is on: nothing sharpens before the order can be told."""
-        end = self.params.bottleneck.end_px
-        return self.sigma / end if end else torch.ones_like(self.sigma)
-
-    def _adapt(self, order: float) -> None:
-        bottleneck = self.params.bottleneck
-        self.running.lerp_(torch.tensor(order).to(self.running), 0.05)
-        if bottleneck.end_px:
-            wins = bool(self.running < bottleneck.winning)
-            self.sigma.mul_(bottleneck.growth if wins else 1 / bottleneck.growth)
-            self.sigma.clamp_(bottleneck.start_px, bottleneck.end_px)

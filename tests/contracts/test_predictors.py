@@ -6,10 +6,10 @@ import pytest
 import torch
 
 from physpipe.core.determinism import torch_generator
-from physpipe.core.prediction import BASELINES
 from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor, Seen, Window
 from physpipe.predictors.dispnet import DispNetParams
+from physpipe.predictors.horizon import BASELINES
 from physpipe.predictors.polynomial import NoParams
 
 HEIGHT, WIDTH, OBJECTS = 32, 48, 3

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 from physpipe.core.geometry import Geometry
-from physpipe.core.prediction import BASELINES
 from physpipe.io import clips, forecasts, results, tracks
+from physpipe.predictors.horizon import BASELINES
 from physpipe.report.film import FilmParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather

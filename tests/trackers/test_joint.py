@@ -10,7 +10,7 @@ import worlds
 from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
 from physpipe.trackers.linking import LinkParams
-from physpipe.trackers.refinement import RefineParams
+from physpipe.trackers.look import RefineParams
 from physpipe.tracknet.places import PeakParams
 
 T = 24
@@ -25,7 +25,16 @@ LINKS = LinkParams(
     speed_frames=2,
     still_px=2,
 )
-REFINE = RefineParams(rounds=2, reach_px=8, search_px=3, extent=1.3, least_fit=0.5)
+REFINE = RefineParams(
+    rounds=2,
+    reach_px=8,
+    search_px=3,
+    extent=1.3,
+    least_fit=0.5,
+    object_part=0.85,
+    ground_part=(1.3, 2.2),
+    least_radius_px=1.5,
+)
 
 
 class Colourfulness(torch.nn.Module):

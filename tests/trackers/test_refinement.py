@@ -4,9 +4,19 @@ import numpy as np
 import pytest
 import worlds
 
-from physpipe.trackers.refinement import RefineParams, Searcher, refined
+from physpipe.trackers.look import RefineParams
+from physpipe.trackers.refinement import Searcher, refined
 
-REFINE = RefineParams(rounds=3, reach_px=12, search_px=4, extent=1.35, least_fit=0.5)
+REFINE = RefineParams(
+    rounds=3,
+    reach_px=12,
+    search_px=4,
+    extent=1.35,
+    least_fit=0.5,
+    object_part=0.85,
+    ground_part=(1.3, 2.2),
+    least_radius_px=1.5,
+)
 T = 20
 
 

@@ -7,10 +7,19 @@ import worlds
 from physpipe.io import tracks
 from physpipe.trackers.base import Trajectory
 from physpipe.trackers.joint import PeakTracker
-from physpipe.trackers.refinement import RefineParams
+from physpipe.trackers.look import RefineParams
 from physpipe.trackers.tables import ObjectsParams, track_tables
 
-REFINE = RefineParams(rounds=2, reach_px=8, search_px=3, extent=1.35, least_fit=0.5)
+REFINE = RefineParams(
+    rounds=2,
+    reach_px=8,
+    search_px=3,
+    extent=1.35,
+    least_fit=0.5,
+    object_part=0.85,
+    ground_part=(1.3, 2.2),
+    least_radius_px=1.5,
+)
 T, CLIPS = 16, 5
 
 

@@ -41,19 +41,19 @@ def batch() -> Moments:
 @pytest.mark.parametrize(("running", "direction"), [(0.1, 1), (0.69, -1)])
 def test_noise_grows_while_the_judge_wins_and_shrinks_while_it_loses(running, direction):
     model = net()
-    model.sigma.fill_(0.1)
-    model.running.fill_(running)
+    model.bottleneck.sigma.fill_(0.1)
+    model.bottleneck.running.fill_(running)
     model.loss(batch(), torch_generator(1))
-    assert model.sigma.item() == pytest.approx(0.1 * 1.5**direction)
+    assert model.bottleneck.sigma.item() == pytest.approx(0.1 * 1.5**direction)
 
 
 def test_noise_keeps_its_bounds_and_the_ramp_ends_at_one():
     model = net()
-    model.sigma.fill_(0.49)
-    model.running.fill_(0.0)
+    model.bottleneck.sigma.fill_(0.49)
+    model.bottleneck.running.fill_(0.0)
     model.loss(batch(), torch_generator(1))
-    assert model.sigma.item() == pytest.approx(0.5)
-    assert model.ramp().item() == pytest.approx(1)
+    assert model.bottleneck.sigma.item() == pytest.approx(0.5)
+    assert model.bottleneck.ramp().item() == pytest.approx(1)
 
 
 def test_without_noise_every_loss_has_its_full_weight_from_the_start():
@@ -99,5 +99,5 @@ def test_restarting_keeps_the_weights():
         model.loss(batch(), torch_generator(step))
     weights = [each.clone() for each in model.parameters()]
     model.restart()
-    assert (model.steps.item(), model.sigma.item()) == (0, pytest.approx(0.02))
+    assert (model.steps.item(), model.bottleneck.sigma.item()) == (0, pytest.approx(0.02))
     assert all(torch.equal(old, new) for old, new in zip(weights, model.parameters(), strict=True))

@@ -7,7 +7,7 @@ import worlds
 
 from physpipe.core.determinism import torch_generator
 from physpipe.core.errors import InputError
-from physpipe.learning.moments import MomentParams, MomentSampler, background
+from physpipe.tracker_learning.moments import MomentParams, MomentSampler, background
 
 
 @pytest.fixture

@@ -10,11 +10,13 @@ import worlds
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
 from physpipe.io import results, tracks
-from physpipe.learning import lessons, tracking
-from physpipe.learning.moments import MomentParams
-from physpipe.learning.tracking import RecipeParams, TrackerParams, learn_first, learn_others
 from physpipe.learning.training import FitParams
 from physpipe.metrics import trackers as metrics
+from physpipe.tracker_learning import saving
+from physpipe.tracker_learning.first import learn_first
+from physpipe.tracker_learning.moments import MomentParams, MomentSampler
+from physpipe.tracker_learning.others import learn_others
+from physpipe.tracker_learning.recipe import RecipeParams, TrackerParams
 from physpipe.trackers import detectors
 from physpipe.trackers.detectors import TrackingParams
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
@@ -206,13 +208,13 @@ def test_a_killed_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
 
     draws = iter(range(70))
 
-    def dies(self, generator, draw=tracking.MomentSampler.__call__):
+    def dies(self, generator, draw=MomentSampler.__call__):
         if next(draws, None) is None:
             raise Killed
         return draw(self, generator)
 
     with monkeypatch.context() as patch:
-        patch.setattr(tracking.MomentSampler, "__call__", dies)
+        patch.setattr(MomentSampler, "__call__", dies)
         with pytest.raises(Killed):
             learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
     resumed = learn_first(clips, recipe, COMPUTE, tmp_path / "killed")
@@ -224,8 +226,8 @@ def test_what_is_saved_is_what_was_learned(tmp_path):
     clips, _ = orbits(tmp_path / "clips")
     recipe = params(steps=5, warm=2, rest=5)
     learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
-    lessons.save_first(tmp_path / "first", clips, learned, recipe)
-    lessons.save_all(tmp_path / "all", clips, tmp_path / "first", [learned], recipe)
+    saving.save_first(tmp_path / "first", clips, learned, recipe)
+    saving.save_all(tmp_path / "all", clips, tmp_path / "first", [learned], recipe)
     assert len(detectors.load(tmp_path / "first" / detectors.WEIGHTS)) == 1
     pair = detectors.load(tmp_path / "all" / detectors.WEIGHTS)
     name = clips.names("test")[0]

@@ -10,8 +10,9 @@ from physpipe.io import results
 from physpipe.io.atomic import replacing_folder
 from physpipe.io.clips import ClipSet
 from physpipe.io.pictures import save_png
-from physpipe.learning.snapshots import heat_sheet
-from physpipe.learning.tracking import Learned, TrackerParams
+from physpipe.tracker_learning.lesson import Learned
+from physpipe.tracker_learning.recipe import TrackerParams
+from physpipe.tracker_learning.snapshots import heat_sheet
 from physpipe.trackers import detectors
 from physpipe.tracknet.model import TrackNet
 from physpipe.tracknet.signals import locked

@@ -12,7 +12,7 @@ from physpipe.core.errors import InputError
 from physpipe.core.progress import progress
 from physpipe.io import forecasts, tracks
 from physpipe.io.clips import TABLE, ClipSet, Split
-from physpipe.learning.windows import as_input
+from physpipe.predictor_learning.windows import as_input
 from physpipe.predictors.base import Forecast, Predictor, Seen
 
 TOGETHER = 32

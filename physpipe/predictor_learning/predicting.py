@@ -11,7 +11,7 @@ from physpipe.core.params import Section
 from physpipe.io import checkpoints, results
 from physpipe.io.clips import ClipSet
 from physpipe.learning.training import FitParams, fit
-from physpipe.learning.windows import TrackWindows, WindowParams
+from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor
 

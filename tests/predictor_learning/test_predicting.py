@@ -4,10 +4,16 @@ import torch
 
 from physpipe.core.errors import InputError
 from physpipe.io import checkpoints
-from physpipe.learning.forecasting import forecast
-from physpipe.learning.predicting import WEIGHTS, learn_predictor, load_predictor, predictor_class, save_predictor
 from physpipe.learning.training import FitParams
-from physpipe.learning.windows import WindowParams
+from physpipe.predictor_learning.forecasting import forecast
+from physpipe.predictor_learning.predicting import (
+    WEIGHTS,
+    learn_predictor,
+    load_predictor,
+    predictor_class,
+    save_predictor,
+)
+from physpipe.predictor_learning.windows import WindowParams
 from physpipe.predictors.dispnet import DispNetParams
 
 HORIZON = 6

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from physpipe.core.determinism import torch_generator
 from physpipe.core.params import Section
+from physpipe.flow_learning.film import Image, Pair, PairParams, draw_pairs
 from physpipe.flownet import weights
 from physpipe.flownet.classical import Flow
 from physpipe.flownet.inference import flows
@@ -18,7 +19,6 @@ from physpipe.flownet.network import CorrFlow
 from physpipe.io import results
 from physpipe.io.atomic import replacing_folder
 from physpipe.io.pictures import save_png
-from physpipe.learning.flow_film import Image, Pair, PairParams, draw_pairs
 
 CURVE, PICTURE, VERDICT = "curve.csv", "pairs.png", "verdict.json"
 TEST = (0, 0, 2)

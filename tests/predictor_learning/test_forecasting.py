@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from physpipe.core.errors import InputError
-from physpipe.learning.forecasting import forecast
+from physpipe.predictor_learning.forecasting import forecast
 from physpipe.predictors import DispNet, Persistence, Quadratic
 from physpipe.predictors.dispnet import DispNetParams
 from physpipe.predictors.polynomial import NoParams

@@ -7,13 +7,13 @@ import torch
 from small_flow import params
 
 from physpipe.core.determinism import torch_generator
+from physpipe.flow_learning import verdict as flow_verdict
+from physpipe.flow_learning.film import draw_pairs
+from physpipe.flow_learning.verdict import colour_wheel, estimates, save_flow, sheet, verdict
 from physpipe.flownet import weights
 from physpipe.flownet.classical import DisParams, FarnebackParams, classical_flows
 from physpipe.flownet.network import CorrFlow
 from physpipe.io import results
-from physpipe.learning import flow_verdict
-from physpipe.learning.flow_film import draw_pairs
-from physpipe.learning.flow_verdict import colour_wheel, estimates, save_flow, sheet, verdict
 
 PARAMS = params(3)
 CLASSICAL = classical_flows(

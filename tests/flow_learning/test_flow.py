@@ -4,8 +4,8 @@ import pytest
 import torch
 from small_flow import params
 
-from physpipe.learning import flow
-from physpipe.learning.flow import learn_flow
+from physpipe.flow_learning import flow
+from physpipe.flow_learning.flow import learn_flow
 
 
 def learned(tmp_path, steps: int = 6, seed: int = 0):

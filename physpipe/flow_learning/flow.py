@@ -8,9 +8,9 @@ from pydantic import Field
 
 from physpipe.core.determinism import device, torch_generator
 from physpipe.core.params import Section
+from physpipe.flow_learning.film import PairParams, as_batch, draw_pairs
+from physpipe.flow_learning.verdict import VerdictParams
 from physpipe.flownet.network import CorrFlow, CorrFlowParams, endpoint_errors
-from physpipe.learning.flow_film import PairParams, as_batch, draw_pairs
-from physpipe.learning.flow_verdict import VerdictParams
 from physpipe.learning.training import FitParams, fit
 
 VALID = (0, 0, 1)

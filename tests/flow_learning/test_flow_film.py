@@ -7,7 +7,7 @@ import small_flow
 from pydantic import ValidationError
 
 from physpipe.core.determinism import torch_generator
-from physpipe.learning.flow_film import Pair, PairParams, as_batch, draw_pairs
+from physpipe.flow_learning.film import Pair, PairParams, as_batch, draw_pairs
 
 SMALL = small_flow.params(1).pairs
 LOOK = {

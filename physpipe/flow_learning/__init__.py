@@ -1,0 +1,1 @@
+"""L5: learning optical flow from drawn pairs."""

@@ -1,0 +1,1 @@
+"""L5: learning to forecast from tracks, and forecasting."""

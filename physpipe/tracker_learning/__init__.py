@@ -1,0 +1,1 @@
+"""L5: learning the tracker, without labels."""
