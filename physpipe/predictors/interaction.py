@@ -44,7 +44,7 @@ def perceptron(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
 def xavier(layer: Layer) -> Layer:
     """The layer with Xavier's weights (Ehrhardt et al. 2018, section 5) and no bias.
 
-    torch's own are smaller by half, which no signal survives through the dozens of layers of a recurrence.
+    torch's own are little more than half as large, and no signal survives that in the dozens of layers of a recurrence.
     """
     nn.init.xavier_uniform_(layer.weight)
     if layer.bias is not None:

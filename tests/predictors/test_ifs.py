@@ -86,13 +86,13 @@ def test_another_object_changes_the_forecast_of_the_first_and_a_lone_one_has_no_
 
 
 @pytest.mark.parametrize("velocity", [True, False])
-def test_one_batch_is_learned_fifty_fold(velocity):
+def test_one_batch_is_learned_thirty_fold(velocity):
     window = springs(clips=4, frames=12)
     net = ifs(2, velocity, drawn=False)
-    optimiser = torch.optim.Adam(net.parameters(), lr=1e-2)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 300)
+    optimiser = torch.optim.Adam(net.parameters(), lr=2e-2)
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 150)
     losses = []
-    for _ in range(300):
+    for _ in range(150):
         optimiser.zero_grad()
         loss, _parts = net.loss(window, torch_generator(0))
         loss.backward()
@@ -100,7 +100,7 @@ def test_one_batch_is_learned_fifty_fold(velocity):
         optimiser.step()
         schedule.step()
         losses.append(loss.item())
-    assert losses[-1] < losses[0] / 50
+    assert losses[-1] < losses[0] / 30
 
 
 def test_a_law_that_runs_away_stays_finite():
