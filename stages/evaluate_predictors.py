@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from physpipe.core.ball import BallParams
 from physpipe.core.command import run
 from physpipe.core.params import read, read_value
 from physpipe.io import forecasts, results, tracks
@@ -13,6 +14,7 @@ from physpipe.scoring.predictors import EvaluatePredictorsParams, score_predicto
 def main(name: str, clips: Path, truth: Path, forecast: Path, out: Path) -> None:
     """Writes figures per supervision and predictor to `out`, and error by horizon to `horizons.csv` beside it."""
     predict = read(f"datasets.{name}.predict", PredictParams)
+    ball = read(f"datasets.{name}.evaluate", BallParams)
     params = read("evaluate_predictors", EvaluatePredictorsParams)
     supervisions = ["tracks", "truth"] if name in read_value("run.supervised") else ["tracks"]
     predictors = [*BASELINES, *read_value("run.learned")]
@@ -21,7 +23,8 @@ def main(name: str, clips: Path, truth: Path, forecast: Path, out: Path) -> None
         for each in supervisions
     }
     exact = name in read_value("run.simulated")
-    figures, horizons = score_predictors(ClipSet(clips), tracks.load(truth), tables, predict.horizon, params, exact)
+    film, annotated = ClipSet(clips), tracks.load(truth)
+    figures, horizons = score_predictors(film, annotated, tables, predict.horizon, params, ball, exact)
     results.save_json(out, figures)
     results.save_csv(out.parent / "horizons.csv", horizons)
 

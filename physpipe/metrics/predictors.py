@@ -6,11 +6,13 @@ Positions are (N, K, 2) pixels, covariances (N, K, 2, 2) square pixels; NaN wher
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
 from physpipe.metrics.trackers import distance
 
 Floats = NDArray[np.floating]
+DIRECTIONS = 64
+"""Of the energy score's integral; leaves it within 0.1 % even where the error is hundreds of standard deviations."""
 
 
 def pairing(found: Floats, truth: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -38,6 +40,32 @@ def covered(mean: Floats, cov: Floats, truth: Floats, level: float) -> Floats:
     """(N, K) 1 where the truth lies in the ellipse that holds it with probability `level`, else 0; NaN if unknown."""
     squared = squared_mahalanobis(mean, cov, truth)
     return np.where(np.isnan(squared), np.nan, squared <= chi2.ppf(level, df=2))
+
+
+def energy_score(mean: Floats, cov: Floats, truth: Floats) -> Floats:
+    """(N, K) px: E|X - y| - E|X - X'| / 2 of truth y and X, X' of the forecast Gaussian (Gneiting and Raftery 2007).
+
+    Proper, and the error itself for a forecast without spread. A plane vector is pi / 2 times as long as its
+    projection on a line is on average over all lines, so this is pi / 2 times the mean CRPS of the projections, whose
+    closed form for a Gaussian is Gneiting et al. 2005, equation 5.
+    """
+    angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    lines = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    std = np.sqrt(np.einsum("nkij,di,dj->nkd", cov.astype(np.float64), lines, lines))
+    z = (truth - mean).astype(np.float64) @ lines.T / std
+    crps = std * (z * (2 * norm.cdf(z) - 1) + 2 * norm.pdf(z) - 1 / np.sqrt(np.pi))
+    return np.pi / 2 * crps.mean(axis=-1)
+
+
+def first_touch(xy: Floats, within_px: float) -> Floats:
+    """(K,) first frame of `xy` (T, K, 2) in which an object is nearer than that to another; infinite if in none.
+
+    An object that is not visible touches nothing. NaN for a lone object.
+    """
+    K = xy.shape[1]
+    apart = distance(xy[:, :, None], xy[:, None]) + np.where(np.eye(K), np.inf, 0)
+    touching = (apart < within_px).any(axis=2)  # (T, K)
+    return np.where(touching.any(axis=0), touching.argmax(axis=0), np.inf if K > 1 else np.nan)
 
 
 def polynomial_errors(xy: Floats, degree: int, fitted_frames: int, frames: list[int]) -> Floats:

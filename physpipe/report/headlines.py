@@ -31,7 +31,7 @@ PREDICTOR_COLUMNS = {
     "fde_px": "FDE px",
     "skill_T": "skill at T",
     "nll_nats": "NLL at T, nats",
-    "nll_bits": "NLL at T, bits",
+    "nll_bits": "NLL at T, bits (the paper's “perplexity”)",
     "coverage_90": "90 % coverage",
 }
 HORIZONS = {"error_T_px": "T", "error_2T_px": "2T"}

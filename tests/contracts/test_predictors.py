@@ -10,7 +10,9 @@ from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor, Seen, Window
 from physpipe.predictors.dispnet import DispNetParams
 from physpipe.predictors.horizon import BASELINES
+from physpipe.predictors.ifs import IfsParams
 from physpipe.predictors.polynomial import NoParams
+from physpipe.predictors.vin import VinParams
 
 HEIGHT, WIDTH, OBJECTS = 32, 48, 3
 SMALL = {
@@ -18,6 +20,8 @@ SMALL = {
     "linear": NoParams(),
     "quadratic": NoParams(),
     "dispnet": DispNetParams(stem=8, channels=8, hidden=8, follow=True, symmetric=True),
+    "vin": VinParams(channels=4, code=8, hidden=8, seen_weight=0, velocity_weight=0),
+    "ifs": IfsParams(hidden=8, velocity=True),
 }
 
 

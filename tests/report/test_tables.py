@@ -100,18 +100,26 @@ def test_csv_files_are_long_and_small(metrics):
     assert learning.groupby(["dataset", "model", "loss"]).size().max() <= 200
 
 
-def test_the_papers_tables_name_known_supervisions_and_figures():
-    tables = paper._paper()
-    for blocks in tables["predictors"].values():
-        assert set(blocks) <= {"truth", "tracks"}
-        for rows in blocks.values():
-            for row in rows.values():
-                assert (
-                    {"error_T_px", "error_2T_px"}
-                    <= set(row)
-                    <= {"error_T_px", "error_2T_px", "nll_bits", "nll_bits_2T"}
-                )
-    for rows in tables["trackers"].values():
+LONG_TERM = {"error_T_px", "error_2T_px"}
+PROBABILISTIC = {*LONG_TERM, "nll_bits", "nll_bits_2T"}
+
+
+@pytest.mark.parametrize("dataset", ["bowls", "heights", "poolr", "bowlr", "heightr", "bowls2", "heightr2"])
+def test_every_row_of_the_papers_predictor_tables_is_there(dataset):
+    """Three tables of errors at T and 2 T, two of errors at frames 10, 20, 30 and, where learned to 40, 40."""
+    blocks = dict(paper._paper()["predictors"][dataset])
+    last = 30 if dataset in ("poolr", "bowls2", "heightr2") else 40
+    fixed = {f"error_{frame}_px" for frame in range(10, last + 1, 10)}
+    long_term = dict.fromkeys(("ifs", "vin", "posnet", "dispnet"), LONG_TERM) | {"probnet": PROBABILISTIC}
+    rows = {name: set(row) for name, row in blocks.pop("tracks").items()}
+    assert rows == {**long_term, "dispnet_long": fixed, "interpnet": fixed}
+    supervised = {name: set(row) for name, row in blocks.get("truth", {}).items()}
+    assert supervised == ({**long_term, "linear": LONG_TERM, "quadratic": LONG_TERM} if "truth" in blocks else {})
+    assert ("truth" in blocks) == (dataset in ("bowls", "heights"))
+
+
+def test_the_papers_tracker_tables_hold_known_figures():
+    for rows in paper._paper()["trackers"].values():
         for row in rows.values():
             assert {"mean_px", "var_px2"} <= set(row) <= {"mean_px", "var_px2", "off_track"}
 

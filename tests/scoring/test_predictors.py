@@ -3,13 +3,15 @@ import pandas as pd
 import pytest
 from numpy.typing import NDArray
 
+from physpipe.core.ball import BallParams
 from physpipe.core.geometry import Geometry
 from physpipe.io import clips, forecasts, tracks
 from physpipe.io.clips import Clip, ClipSet
 from physpipe.scoring.predictors import EvaluatePredictorsParams, calibration, score_predictors
 
 T, LENGTH, FIRST = 5, 13, 2
-PARAMS = EvaluatePredictorsParams(bootstrap_resamples=200)
+PARAMS = EvaluatePredictorsParams(collision_radii=2.0, bootstrap_resamples=200)
+BALL = BallParams(ball_radius_px=5.0)
 
 
 def truth_of(number: int, objects: int = 1) -> NDArray[np.float64]:
@@ -55,7 +57,7 @@ def still(truth):
 
 def scored(film, table, truth, horizon=T, objects: int = 1):
     tables = {"tracks": {"persistence": forecast_table(still, objects=objects), "net": table}}
-    return score_predictors(film, truth, tables, horizon, PARAMS, exact=True)
+    return score_predictors(film, truth, tables, horizon, PARAMS, BALL, exact=True)
 
 
 def test_the_forecaster_that_knows_scores_zero(film):
@@ -83,18 +85,95 @@ def test_errors_by_hand(film):
 
 
 def test_what_no_clip_reaches_or_no_predictor_says_is_nan(film):
+    """The clips end at frame 12; one object has no collisions; nothing but a covariance tells of likelihood."""
     figures, _ = scored(film, forecast_table(lambda truth: truth), truth_table())
-    net = figures["tracks"]["net"]
-    unknown = ["error_4T_px", "error_4T_px_low", "nll_nats", "nll_bits", "coverage_90"]
-    assert all(np.isnan(net[name]) for name in unknown)
+    known = {name for name, value in figures["tracks"]["net"].items() if not np.isnan(value)}
+    at = {f"error_{at}_px{end}" for at in ("10", "T", "2T") for end in ("", "_low", "_high")}
+    assert known == {*at, "ade_px", "fde_px", "skill_T", "skill_2T", "clips", "frames_to_radius", "within_radius"}
+
+
+def test_errors_at_fixed_frames_are_those_of_the_frame_whatever_t_is(film):
+    figures, _ = scored(film, forecast_table(still), truth_table(), horizon=4)
+    rest = figures["tracks"]["net"]
+    assert rest["error_10_px"] == rest["error_10_px_low"] == pytest.approx(18)
+    assert rest["error_T_px"] == pytest.approx(6)
+    assert np.isnan(rest["error_20_px"])
+
+
+def test_a_forecast_that_ends_early_knows_nothing_of_later_frames(film):
+    """An interpolation predictor's last frame is the last one learned, here 7: T is reached, 2 T is not."""
+    table = forecast_table(lambda truth: truth, cov=np.eye(2))
+    net = scored(film, table[table["frame"] <= 7], truth_table())[0]["tracks"]["net"]
+    later = [name for name in net if "2T" in name or "4T" in name or name.startswith("error_10_px")]
+    assert len(later) > 20
+    assert all(np.isnan(net[name]) for name in later)
+    assert (net["error_T_px"], net["coverage_90_T"], net["clips"]) == (0, 1, 3)
 
 
 def test_likelihood_and_coverage_of_a_probabilistic_forecast(film):
     figures, _ = scored(film, forecast_table(lambda truth: truth, cov=np.eye(2)), truth_table())
     net = figures["tracks"]["net"]
-    assert net["nll_nats"] == pytest.approx(np.log(2 * np.pi))
-    assert net["nll_bits"] == pytest.approx(np.log2(2 * np.pi))
+    for suffix in ("", "_2T"):
+        assert net[f"nll_nats{suffix}"] == pytest.approx(np.log(2 * np.pi))
+        assert net[f"nll_bits{suffix}"] == pytest.approx(np.log2(2 * np.pi))
+        assert net[f"perplexity{suffix}"] == pytest.approx(2 * np.pi)
+    assert net["energy_score_T_px"] == pytest.approx(np.sqrt(np.pi / 2) * (1 - np.sqrt(0.5)))
     assert net["coverage_90"] == 1
+
+
+def test_coverage_is_told_for_each_level_at_t_and_at_2t(film):
+    """Off by 2 px with a standard deviation of 1 px at T, of 10 px at 2 T: 1 - exp(-2) = 86 % lies nearer at T."""
+    std = np.where(np.arange(FIRST, LENGTH) < 2 * T, 1.0, 10.0)[:, None, None, None]
+    table = forecast_table(lambda truth: truth + np.array([2.0, 0.0]), cov=std**2 * np.eye(2))
+    net = scored(film, table, truth_table())[0]["tracks"]["net"]
+    assert [net[f"coverage_{level}_T"] for level in (50, 90, 95)] == [0, 1, 1]
+    assert [net[f"coverage_{level}_2T"] for level in (50, 90, 95)] == [1, 1, 1]
+    assert net["nll_nats"] == pytest.approx(np.log(2 * np.pi) + 2, abs=1e-5)
+    assert net["nll_nats_2T"] == pytest.approx(np.log(2 * np.pi * 100) + 0.02, abs=1e-5)
+    assert net["energy_score_2T_px"] > net["energy_score_T_px"]
+
+
+def test_a_forecast_that_is_sure_and_wrong_is_infinitely_perplexed(film):
+    table = forecast_table(lambda truth: truth + 50, cov=0.01 * np.eye(2))
+    assert scored(film, table, truth_table())[0]["tracks"]["net"]["perplexity"] == np.inf
+
+
+def test_frames_to_a_radius_are_the_median_over_objects(film):
+    """Standing still costs 2 px a frame from frame 2 on, so 5 px are exceeded at frame 4."""
+    net = scored(film, forecast_table(still), truth_table())[0]["tracks"]["net"]
+    assert (net["frames_to_radius"], net["within_radius"]) == (4, 0)
+    mixed = forecast_table(lambda truth: still(truth) if truth[0, 0, 0] > 10 else truth)  # clip c2 alone stands still
+    net = scored(film, mixed, truth_table())[0]["tracks"]["net"]
+    assert (net["frames_to_radius"], net["within_radius"]) == (np.inf, pytest.approx(2 / 3))
+
+
+def meeting(count: int = 3) -> tuple[pd.DataFrame, list[NDArray[np.float64]]]:
+    """Truth of test clips with two objects: nearer than two radii (10 px) from frame 4, 8, never; as a table and px."""
+    tables, clips = [], []
+    for number, frame in enumerate([4, 8, LENGTH][:count]):
+        xy = truth_of(number, objects=2)
+        xy[frame:, 1, 1] = 9.0
+        clips.append(xy)
+        tables.append(tracks.rows(f"c{number}", np.arange(LENGTH) / 80, xy, np.ones((LENGTH, 2)), "reference"))
+    return pd.concat(tables), clips
+
+
+def test_errors_before_and_after_the_first_collision_are_told_apart(film):
+    """Off by 1, 2, 3 px in the three clips; at T = 5 one pair has met, at 2 T two have."""
+    truth, clips = meeting()
+    rows = [forecasts.rows(f"c{i}", FIRST, xy[FIRST:] + np.array([i + 1.0, 0.0])) for i, xy in enumerate(clips)]
+    net = scored(film, pd.concat(rows), truth, objects=2)[0]["tracks"]["net"]
+    assert net["error_T_px_after_collision"] == pytest.approx(1)
+    assert net["error_T_px_before_collision"] == pytest.approx(2.5)
+    assert net["error_2T_px_after_collision"] == pytest.approx(1.5)
+    assert net["error_2T_px_after_collision_high"] == pytest.approx(2)  # both draws the second clip
+    assert net["error_2T_px_before_collision"] == pytest.approx(3)
+
+
+def test_without_collisions_there_is_nothing_after_one(film):
+    net = scored(film, forecast_table(still, objects=2), truth_table(objects=2), objects=2)[0]["tracks"]["net"]
+    assert net["error_T_px_before_collision"] == net["error_T_px"]
+    assert np.isnan(net["error_T_px_after_collision"])
 
 
 def test_objects_numbered_otherwise_are_matched_but_a_later_swap_is_an_error(film):
