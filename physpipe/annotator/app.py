@@ -34,12 +34,18 @@ class Desk:
     objects: int
     """How many objects to offer in a clip that nobody annotated."""
 
+    @property
+    def place(self) -> str:
+        """A name of the annotated folder, which tells a page left open that another one is served at its address."""
+        return sha256(str(self.store.folder.resolve()).encode()).hexdigest()[:16]
+
 
 class Change(BaseModel):
-    """A clip's new state, and the revision of the one that it was made from."""
+    """A clip's new state, the revision of the one that it was made from, and the folder that both belong to."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    place: str
     revision: str
     state: ClipState
 
@@ -71,8 +77,7 @@ def _add_reading(app: Flask, desk: Desk) -> None:
             {"name": name, "split": clips.split(name)} | {file: int(rows.get(name, 0)) for file, rows in said.items()}
             for name in clips.names()
         ]
-        place = sha256(str(store.folder.resolve()).encode()).hexdigest()[:16]
-        return {"name": desk.name, "place": place, "objects": desk.objects, "clips": listed}
+        return {"name": desk.name, "place": desk.place, "objects": desk.objects, "clips": listed}
 
     @app.get("/api/clips/<name>")
     def about_clip(name: str) -> dict[str, Any]:
@@ -111,6 +116,10 @@ def _add_changing(app: Flask, desk: Desk) -> None:
     def change(name: str) -> dict[str, Any]:
         _rows_or_404(desk, name)
         wanted = _body(Change)
+        if wanted.place != desk.place:
+            abort(
+                410, "another data set is served here by now: serve the one of this page again, or open the page anew"
+            )
         return {"revision": desk.store.save(name, wanted.state, wanted.revision).revision}
 
 

@@ -57,21 +57,29 @@ def test_boxes_are_answered_without_being_saved(client):
     assert not ANNOTATIONS.exists()
 
 
-def test_a_change_is_saved_and_a_second_one_to_the_same_state_refused(client):
+def test_a_change_is_saved_and_a_second_one_to_the_same_state_refused(client, desk):
     clip = client.get("/api/clips/a", headers=HOME).get_json()
-    change = {"revision": clip["revision"], "state": {"boxes": [BOX], "corrections": []}}
+    about = {"place": desk.place, "revision": clip["revision"]}
+    change = about | {"state": {"boxes": [BOX], "corrections": []}}
     saved = client.put("/api/clips/a", json=change, headers=HOME)
     assert saved.status_code == 200
     assert "a,0,0,3,6,15,15" in (ANNOTATIONS / "templates.csv").read_text()
-    refused = client.put("/api/clips/a", json={"revision": clip["revision"], "state": EMPTY}, headers=HOME)
+    refused = client.put("/api/clips/a", json=about | {"state": EMPTY}, headers=HOME)
     assert refused.status_code == 409
     told = refused.get_json()
     assert "changed elsewhere" in told["error"]
     assert told["state"] == change["state"]
     assert told["revision"] == saved.get_json()["revision"]
     assert client.put("/api/clips/a", json=told | {"state": EMPTY}, headers=HOME).status_code == 422  # has a key more
-    again = {"revision": told["revision"], "state": EMPTY}
+    again = {"place": desk.place, "revision": told["revision"], "state": EMPTY}
     assert client.put("/api/clips/a", json=again, headers=HOME).status_code == 200
+
+
+def test_a_page_left_open_does_not_write_into_another_set(client, desk):
+    change = {"place": "another", "revision": "", "state": EMPTY}
+    refused = client.put("/api/clips/a", json=change, headers=HOME)
+    assert refused.status_code == 410
+    assert "another data set is served here" in refused.get_json()["error"]
 
 
 def test_files_spoilt_while_the_page_is_open_are_told_line_by_line(client, annotate_files):
@@ -106,7 +114,7 @@ def test_no_path_leads_out_of_the_clip_table(client, place):
 
 def test_changes_to_unknown_clips_make_no_file(client):
     for name in ("c", "..", "%2e%2e%2fx"):
-        refused = client.put(f"/api/clips/{name}", json={"revision": "", "state": EMPTY}, headers=HOME)
+        refused = client.put(f"/api/clips/{name}", json={"place": "", "revision": "", "state": EMPTY}, headers=HOME)
         assert refused.status_code in (404, 405)
     assert not ANNOTATIONS.exists()
 
@@ -125,8 +133,16 @@ def test_wrong_methods_are_refused(client, method, place):
         ("revision=1", "application/x-www-form-urlencoded", 415),
         ('{"revision": ""}', "text/plain", 415),
         ("{", "application/json", 422),
-        ('{"revision": "", "state": {"boxes": [], "corrections": [{"object": 0}]}}', "application/json", 422),
-        ('{"revision": "", "state": {"boxes": [], "corrections": [], "more": 1}}', "application/json", 422),
+        (
+            '{"place": "", "revision": "", "state": {"boxes": [], "corrections": [{"object": 0}]}}',
+            "application/json",
+            422,
+        ),
+        (
+            '{"place": "", "revision": "", "state": {"boxes": [], "corrections": [], "more": 1}}',
+            "application/json",
+            422,
+        ),
         (" " * (LARGEST_BODY + 1), "application/json", 413),
     ],
 )

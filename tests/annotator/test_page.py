@@ -25,6 +25,7 @@ from physpipe.io.clips import ClipSet
 TEMPLATES = "clip,object,frame,x,y,w,h\na,0,0,3,6,15,15\na,1,0,3,28,15,15\n"
 FOREIGN = "evil.example"
 """A name that the browser of these tests takes to this machine, as its owner's name server would."""
+expect.set_options(timeout=30_000)  # a busy machine is slow, not wrong
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +43,7 @@ def browser() -> Iterator[Browser]:
 @pytest.fixture
 def context(browser: Browser) -> Iterator[BrowserContext]:
     """A fresh browser; what its pages' scripts complain of fails the test."""
-    context = browser.new_context(viewport={"width": 1100, "height": 760})
+    context = browser.new_context(viewport={"width": 900, "height": 600})
     complaints: list[str] = []
     context.on("weberror", lambda error: complaints.append(str(error.error)))
     yield context
@@ -92,7 +93,7 @@ def test_fifty_frames_are_annotated_by_keyboard_alone(desk: Desk, context: Brows
         press(page, "Enter")  # a box around disc 1
         expect(page.locator("#where")).to_contain_text("score 1.00")
         for _ in range(50):
-            press(page, "d", "ArrowRight", "Alt+ArrowUp")
+            press(page, "d", "ArrowRight")
         saved(page)
     box = pd.read_csv(ANNOTATIONS / "templates.csv").iloc[0]
     assert (box["object"], box["frame"]) == (1, 0)
@@ -103,7 +104,7 @@ def test_fifty_frames_are_annotated_by_keyboard_alone(desk: Desk, context: Brows
     expected = path(1) + centre - path(1)[0]
     assert np.abs(rows.loc[[0, 51, 52, 53], ["x", "y"]] - expected[[0, 51, 52, 53]]).max(axis=None) < 0.3  # pixels
     moved = rows.loc[1:50, ["x", "y"]].to_numpy() - expected[1:51]
-    assert np.abs(moved - [1, -0.1]).max() < 0.3  # the tracker's own error
+    assert np.abs(moved - [1, 0]).max() < 0.3  # the tracker's own error
     assert corrections().loc[("a", 1, 50), "x"] == pytest.approx(rows.loc[50, "x"], abs=1e-5)
 
 
@@ -138,9 +139,8 @@ def test_marks_go_over_spans_and_are_taken_back(desk, context, annotate_files) -
         saved(page)
         rows = corrections().loc[("a", 0)]
         assert rows["visible"].to_dict() == {1: False, 2: False, 3: False, 4: False, 6: True}
-        assert "Shift+l" not in page.inner_text("#hint")
         press(page, "End", "1", "Shift+l")
-        expect(page.locator("#hint")).to_contain_text("No earlier frame of object 1 is marked lost")
+        expect(page.locator("#hint")).to_contain_text("No earlier frame of object 1 is lost")
 
 
 def test_interpolated_frames_follow_their_keys_and_undo_goes_all_the_way_back(desk, context, annotate_files) -> None:
@@ -326,6 +326,9 @@ def test_keys_are_explained_and_everything_has_a_name(desk, context) -> None:
         expect(page.locator("#where")).to_contain_text("frame 0")
         assert not (ANNOTATIONS / "corrections.csv").exists()
         assert all(each.inner_text().strip() for each in page.get_by_role("button").all())
+        cyrillic = "new KeyboardEvent('keydown', {key: 'в', code: 'KeyD', bubbles: true})"
+        page.evaluate(f"document.body.dispatchEvent({cyrillic})")
+        expect(page.locator("#where")).to_contain_text("frame 1 ")
         press(page, "n")
         expect(page.get_by_role("button", name="object 2")).to_have_attribute("aria-pressed", "true")
         page.set_viewport_size({"width": 380, "height": 700})
@@ -361,7 +364,7 @@ def test_another_site_in_the_same_browser_gets_nothing(desk, context, evil_page,
         page.goto(evil_page)
         lost = CorrectionRow(object=0, frame=0, x=None, y=None, visible=False, interpolated=False)
         nothing, wanted = ClipState(boxes=(), corrections=()), ClipState(boxes=(), corrections=(lost,))
-        body = Change(revision=nothing.revision, state=wanted).model_dump_json()
+        body = Change(place=desk.place, revision=nothing.revision, state=wanted).model_dump_json()
         outcome = page.evaluate(
             f"([url, body]) => {ATTACKS[attack]}.then(() => 'got through', error => String(error))", [server.url, body]
         )

@@ -7,7 +7,8 @@ const UNDO_STEPS = 300;
 const FRAMES_AHEAD = 16;
 const FRAMES_KEPT = 400; // decoded pictures
 const RETRY_MS = 2000;
-const ANSWER_MS = 60000; // a tracker may take its time over a long clip
+const ANSWER_MS = 15000;
+const TRACKER_MS = 600000; // over a long clip with many objects
 const SMALLEST_BOX = 3; // pixels, as the reader of the file wants it
 const GRAB = 12; // screen pixels from a point or a corner that still take hold of it
 const ZOOM = 4;
@@ -17,7 +18,9 @@ const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 const rounded = (value) => Math.round(value * 100) / 100;
 const plural = (count, word, words = `${word}s`) => `${count} ${count === 1 ? word : words}`;
 const keyOf = (object, frame) => `${object}:${frame}`;
-const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const COLOURS = Object.fromEntries(["tracker", "key", "between", "lost", "box"].map((name) => [name, colourOf(name)]));
+COLOURS.occluded = COLOURS.key;
 
 // ---- The server -----------------------------------------------------------------------------------------------------
 
@@ -28,9 +31,9 @@ class Refused extends Error {
   }
 }
 
-async function ask(path, method = "GET", body = undefined) {
+async function ask(path, method = "GET", body = undefined, patience = ANSWER_MS) {
   const headers = body === undefined ? {} : { "Content-Type": "application/json" };
-  const signal = AbortSignal.timeout(ANSWER_MS);
+  const signal = AbortSignal.timeout(patience);
   const response = await fetch(`api/${path}`, { method, headers, body: body && JSON.stringify(body), signal });
   const answer = await response.json().catch(() => ({}));
   if (!response.ok) throw new Refused(response.status, answer);
@@ -220,7 +223,7 @@ async function save(session) {
   while (session.said !== session.saved && !trouble) {
     tellSaved();
     const sent = session.said;
-    const change = { revision: session.revision, state: sent.toRows() };
+    const change = { place: set.place, revision: session.revision, state: sent.toRows() };
     try {
       const { revision } = await persistently(() => ask(clipPath(session.clip.name), "PUT", change));
       [session.revision, session.saved] = [revision, sent];
@@ -321,7 +324,7 @@ async function askForAnswer(session) {
   }
   if (!session.clip.referenced) hint("The tracker follows the boxes …");
   try {
-    const found = await ask(clipPath(session.clip.name, "answer"), "POST", { boxes, corrections: [] });
+    const found = await ask(clipPath(session.clip.name, "answer"), "POST", { boxes, corrections: [] }, TRACKER_MS);
     if (session.answered !== wanted) return; // the boxes changed meanwhile
     session.answer = new Map(Object.entries(found).map(([object, columns]) => [Number(object), columns]));
     if (!session.clip.referenced) hint("");
@@ -383,9 +386,11 @@ async function open(name, number = 0) {
     }
   } catch (error) {
     sessions.delete(name);
+    $("clip").value = session?.clip.name ?? name;
     return alarm(error.message);
   }
   if (opening !== name) return; // another clip was asked for meanwhile
+  session?.pictures.clear();
   session = sessions.get(name);
   object = clamp(object, 0, session.objects - 1);
   $("clip").value = name;
@@ -398,7 +403,9 @@ async function open(name, number = 0) {
 function welcome() {
   const { boxes, corrections } = session.said;
   const said = boxes.size || corrections.size || session.clip.referenced;
-  return said ? "" : "Nobody annotated this clip. b draws a box for the tracker; arrows place the point by hand; d goes on.";
+  return said
+    ? ""
+    : "Nobody annotated this clip. b draws a box for the tracker; arrows place the point by hand; d goes on.";
 }
 
 function go(to) {
@@ -424,6 +431,22 @@ function choose(number) {
   if (boxing) finishBox();
   object = number;
   aim();
+  draw();
+}
+
+function offerObject() {
+  session.offered = session.objects + 1;
+  choose(session.offered - 1);
+}
+
+function toggleZoom() {
+  zoomed = !zoomed;
+  aim();
+  draw();
+}
+
+function toggleMarks() {
+  marks = !marks;
   draw();
 }
 
@@ -471,14 +494,15 @@ function nudge(dx, dy, held) {
 
 function keep() {
   const now = session.shown(object, frame);
-  if (now.x === undefined) return (hint("No position to keep here; an arrow key makes one."), false);
+  if (now.x === undefined) {
+    hint("No position to keep here; an arrow key makes one.");
+    return false;
+  }
   correct(key(now, now.how !== "occluded"));
   return true;
 }
 
-function lose(on) {
-  say((said) => said.corrections.set(at(on), { x: null, y: null, visible: false, interpolated: false }));
-}
+const LOST = { x: null, y: null, visible: false, interpolated: false };
 
 function occlude(said, on) {
   const now = session.shown(object, on);
@@ -496,12 +520,11 @@ function toggleOccluded() {
 function extend(how) {
   let from = frame - 1;
   while (from >= 0 && session.shown(object, from).how !== how) from--;
-  if (from < 0)
-    return hint(`No earlier frame of object ${object} is marked ${how}; mark the first one, then come here.`);
+  if (from < 0) return hint(`No earlier frame of object ${object} is ${how}; mark the first one, then come here.`);
   say((said) => {
     for (let on = from + 1; on <= frame; on++) {
       if (how === "occluded") occlude(said, on);
-      else said.corrections.set(at(on), { x: null, y: null, visible: false, interpolated: false });
+      else said.corrections.set(at(on), LOST);
     }
   });
 }
@@ -513,8 +536,9 @@ function takeBack() {
   say((said) => {
     said.corrections.delete(at());
     for (const step of [-1, 1]) {
-      for (let on = frame + step; said.corrections.get(at(on))?.interpolated; on += step)
+      for (let on = frame + step; said.corrections.get(at(on))?.interpolated; on += step) {
         said.corrections.delete(at(on));
+      }
     }
   });
 }
@@ -527,7 +551,7 @@ function fill() {
   while (to < session.T && !word(to)) to++;
   if (from < 0 || to >= session.T || !isAnchor(from) || !isAnchor(to)) {
     return hint(
-      "Interpolation needs a key (a position by hand, or a box) before this frame and one here or after it, none of the frames between marked lost.",
+      "Needs a key (a position by hand, or a box) before this frame, one here or after it, none lost between.",
     );
   }
   if (to === from + 1) return hint(`Frames ${from} and ${to} have nothing between them.`);
@@ -592,8 +616,7 @@ const otherClip = (step) => {
 
 function box() {
   if (boxing) return finishBox();
-  if (session.clip.referenced)
-    return hint("This clip has reference positions: truth comes from them, and boxes are not looked at.");
+  if (session.clip.referenced) return hint("Truth comes from this clip's reference positions, which make boxes idle.");
   const last = [...session.said.boxes].filter(([each]) => each.startsWith(`${object}:`)).at(-1)?.[1];
   const side = Math.round(Math.min(session.clip.width, session.clip.height) / 6);
   const { w, h } = last ?? { w: side, h: side };
@@ -632,9 +655,9 @@ function cancelBox() {
 }
 
 function removeBox() {
-  boxing = null;
-  if (!session.said.boxes.has(at())) return (hint("No box of this object here."), draw());
-  say((said) => said.boxes.delete(at()));
+  cancelBox();
+  if (session.said.boxes.has(at())) say((said) => said.boxes.delete(at()));
+  else hint("No box of this object here.");
 }
 
 // ---- Commands: one list for keys, buttons and the help --------------------------------------------------------------
@@ -658,7 +681,7 @@ const COMMANDS = [
   ["Point", "keep", ["k"], "keep this position", keep, "button"],
   ["Point", "keep-on", ["Enter"], "keep it, next frame", () => (boxing ? finishBox() : keep() && go(frame + 1))],
   ["Point", "occluded", ["o"], "occluded: hidden, a guess", toggleOccluded, "button"],
-  ["Point", "lost", ["l"], "lost: out of the picture", () => lose(frame), "button"],
+  ["Point", "lost", ["l"], "lost: out of the picture", () => correct(LOST), "button"],
   ["Point", "occluded-since", ["Shift+o"], "occluded since the last such frame", () => extend("occluded")],
   ["Point", "lost-since", ["Shift+l"], "lost since the last such frame", () => extend("lost")],
   ["Point", "back-to-tracker", ["Delete", "Backspace"], "take the correction back", takeBack, "button"],
@@ -670,16 +693,9 @@ const COMMANDS = [
   ["Template box", "cancel", ["Escape"], "leave the box as it was", () => boxing && cancelBox()],
   ["Changes", "undo", ["z", "Ctrl+z"], "undo", undo, "button holds"],
   ["Changes", "redo", ["Shift+z", "Ctrl+Shift+z", "Ctrl+y"], "redo", redo, "button holds"],
-  [
-    "Objects",
-    "new-object",
-    ["n"],
-    "new object",
-    () => ((session.offered = session.objects + 1), choose(session.objects - 1)),
-    "button",
-  ],
-  ["View", "zoom", ["f"], `zoom ${ZOOM}×, and back`, () => ((zoomed = !zoomed), aim(), draw()), "button"],
-  ["View", "marks", ["m"], "hide or show the marks", () => ((marks = !marks), draw()), "button"],
+  ["Objects", "new-object", ["n"], "new object", offerObject, "button"],
+  ["View", "zoom", ["f"], `zoom ${ZOOM}×, and back`, toggleZoom, "button"],
+  ["View", "marks", ["m"], "hide or show the marks", toggleMarks, "button"],
   ["View", "help", ["?", "h"], "keys", () => $("help").showModal()],
 ].map(([group, id, keys, label, run, flags = ""]) => ({ group, id, keys, label, run, flags }));
 
@@ -693,10 +709,12 @@ const MORE_KEYS = [
   ["Objects", ["0 … 9"], "choose an object"],
 ];
 
+// As in COMMANDS. Where a keyboard writes other letters than a to z, the place of the key counts.
 function nameOf(event) {
-  const letter = /^[a-z]$/i.test(event.key);
-  const name = event.key === " " ? "Space" : letter ? event.key.toLowerCase() : event.key;
-  const shift = event.shiftKey && (letter || event.key.length > 1) ? "Shift+" : "";
+  const placed = /^Key[A-Z]$/.test(event.code) && /^[^ -~]$/.test(event.key) ? event.code.slice(3) : event.key;
+  const letter = /^[a-z]$/i.test(placed);
+  const name = placed === " " ? "Space" : letter ? placed.toLowerCase() : placed;
+  const shift = event.shiftKey && (letter || placed.length > 1) ? "Shift+" : "";
   const control = (event.ctrlKey || event.metaKey) && !event.getModifierState("AltGraph") ? "Ctrl+" : "";
   return control + shift + name;
 }
@@ -796,7 +814,14 @@ function fitted(canvas) {
   return pen;
 }
 
+let drawing = null;
+
 function draw() {
+  drawing ??= requestAnimationFrame(paint); // once, however much changes before the screen does
+}
+
+function paint() {
+  drawing = null;
   if (!session) return;
   const pen = fitted($("view"));
   const { scale, left, top } = layout();
@@ -816,7 +841,7 @@ function drawMarks(pen) {
   drawTrail(pen);
   const rectangle = boxing ?? session.said.boxes.get(at());
   if (rectangle) drawBox(pen, rectangle);
-  const now = drag ? { how: "key", ...drag } : session.shown(object, frame);
+  const now = drag ?? session.shown(object, frame);
   if (now.x !== undefined) drawPoint(pen, now);
 }
 
@@ -844,7 +869,7 @@ function drawTrail(pen) {
     const now = session.shown(object, on);
     if (now.x === undefined || on === frame) continue;
     pen.globalAlpha = 0.8 * (1 - Math.abs(on - frame) / (TRAIL + 1));
-    pen.fillStyle = style({ tracker: "tracker", between: "between" }[now.how] ?? "key");
+    pen.fillStyle = COLOURS[now.how];
     pen.beginPath();
     pen.arc(...toScreen(now), 2, 0, 2 * Math.PI);
     pen.fill();
@@ -866,28 +891,24 @@ function drawPoint(pen, { how, x: across, y: down }) {
   Object.assign(pen, { strokeStyle: "#000a", lineWidth: 4 });
   pen.stroke(strokes);
   pen.setLineDash(how === "occluded" ? [4, 3] : []);
-  Object.assign(pen, { strokeStyle: style({ tracker: "tracker", between: "between" }[how] ?? "key"), lineWidth: 2 });
+  Object.assign(pen, { strokeStyle: COLOURS[how], lineWidth: 2 });
   pen.stroke(strokes);
   pen.setLineDash([]);
 }
 
 function drawBox(pen, { x, y, w, h }) {
   const { scale, left, top } = layout();
-  Object.assign(pen, { strokeStyle: style("box"), lineWidth: boxing ? 3 : 1.5 });
+  Object.assign(pen, { strokeStyle: COLOURS.box, lineWidth: boxing ? 3 : 1.5 });
   pen.setLineDash(boxing ? [] : [5, 4]);
   pen.strokeRect(left + x * scale, top + y * scale, w * scale, h * scale);
   pen.setLineDash([]);
   if (!boxing) return;
-  pen.fillStyle = style("box");
+  pen.fillStyle = COLOURS.box;
   for (const [cx, cy] of corners(boxing)) pen.fillRect(left + cx * scale - 4, top + cy * scale - 4, 8, 8);
 }
 
-const corners = ({ x, y, w, h }) => [
-  [x, y],
-  [x + w, y],
-  [x + w, y + h],
-  [x, y + h],
-]; // counted from the pixels' edges
+// Counted from the picture's corner, not from the first pixel's centre.
+const corners = ({ x, y, w, h }) => [0, 1, 2, 3].map((n) => [x + (n % 3 ? w : 0), y + (n > 1 ? h : 0)]);
 
 // ---- The timeline: a column a frame, its height the tracker's score ---------------------------------------------------
 
@@ -895,7 +916,6 @@ function drawTimeline() {
   const pen = fitted($("timeline"));
   const [across, down] = [$("timeline").clientWidth, $("timeline").clientHeight];
   const step = across / session.T;
-  const colours = Object.fromEntries(["tracker", "key", "between", "lost", "box"].map((name) => [name, style(name)]));
   pen.fillStyle = "#2a2e36";
   pen.fillRect(0, 0, across, down);
   for (let on = 0; on < session.T; on++) {
@@ -903,21 +923,21 @@ function drawTimeline() {
     const [x, width] = [on * step, Math.max(step - (step > 4 ? 1 : 0), 0.5)];
     if (now.how === "tracker") {
       const high = (down - 14) * (0.15 + 0.85 * (now.score ?? 1));
-      pen.fillStyle = colours.tracker;
+      pen.fillStyle = COLOURS.tracker;
       pen.globalAlpha = isDoubtful(on) ? 1 : 0.55;
       pen.fillRect(x, down - high, width, high);
       pen.globalAlpha = 1;
     } else if (now.how === "lost" || now.how === "none") {
-      pen.fillStyle = colours.lost;
+      pen.fillStyle = COLOURS.lost;
       pen.globalAlpha = now.how === "lost" ? 1 : 0.35;
       pen.fillRect(x, down - 6, width, 6);
       pen.globalAlpha = 1;
     } else {
-      pen.fillStyle = now.how === "between" ? colours.between : colours.key;
+      pen.fillStyle = COLOURS[now.how];
       const high = now.how === "occluded" ? (down - 14) / 3 : down - 14;
       pen.fillRect(x, down - high, width, high);
     }
-    pen.fillStyle = colours.box;
+    pen.fillStyle = COLOURS.box;
     if (session.said.boxes.has(at(on))) pen.fillRect(x, 0, Math.max(width, 3), 10);
   }
   Object.assign(pen, { strokeStyle: "#fff", lineWidth: 2 });
@@ -937,7 +957,7 @@ const HOW = {
 
 function tell() {
   const { clip, T } = session;
-  const now = drag ? { how: "key", ...drag } : session.shown(object, frame);
+  const now = drag ?? session.shown(object, frame);
   const why = clip.referenced && now.how === "tracker" ? "the reference position" : HOW[now.how];
   const score = now.score === undefined || clip.referenced ? "" : `, score ${now.score.toFixed(2)}`;
   const place = now.x === undefined ? "" : `(${now.x.toFixed(1)}, ${now.y.toFixed(1)}) px${score}`;
@@ -1022,7 +1042,7 @@ function onPress(event) {
     ...(held ? { x: now.x, y: now.y } : session.inside(from)),
     dx: held ? now.x - from.x : 0,
     dy: held ? now.y - from.y : 0,
-    how: now.how,
+    how: now.how === "occluded" ? "occluded" : "key",
   };
   draw();
 }
@@ -1114,9 +1134,9 @@ async function begin() {
   for (const type of ["pointerdown", "pointermove"]) $("timeline").addEventListener(type, onTimeline);
   new ResizeObserver(draw).observe($("stage"));
   const asked = new URLSearchParams(location.hash.slice(1));
-  object = Number(asked.get("object") ?? 0);
+  object = Number(asked.get("object")) || 0;
   const known = set.clips.some(({ name }) => name === asked.get("clip"));
-  await open(known ? asked.get("clip") : set.clips[0].name, Number(asked.get("frame") ?? 0));
+  await open(known ? asked.get("clip") : set.clips[0].name, Number(asked.get("frame")) || 0);
   $("view").focus();
 }
 
