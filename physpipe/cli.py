@@ -19,6 +19,7 @@ from physpipe.io.split_file import SPLIT_FILE
 
 TEMPLATE = "pendulum"
 EXAMPLE = "example: physpipe add marbles ~/film --source-fps 240 --fps 80 --crop 420,0,1080,1080 --objects 2"
+PORT = 8765
 
 
 def main() -> None:
@@ -54,6 +55,14 @@ def add(words: argparse.Namespace) -> None:
     print("  dvc repro" if words.run else f"  {alone}")
     if not (annotations / REFERENCE).exists() and not (words.folder / TEMPLATES).exists():
         print(f"To have errors measured, put boxes into {annotations / TEMPLATES} (clip names: data/clips/{name}).")
+
+
+def annotate(words: argparse.Namespace) -> None:
+    """Template boxes and corrections in the browser, into data/annotations."""
+    from physpipe.annotator import serving  # a web server, for which no other command should wait
+
+    place = Path("data/annotations") / words.name
+    serving.annotate(words.name, Path("data/clips") / words.name, place, words.port, words.browser)
 
 
 def _extended(text: str, name: str, words: argparse.Namespace) -> str:
@@ -100,6 +109,13 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--crop", type=_crop, metavar="L,T,W,H", help="box in pixels (default: centred square)")
     command.add_argument("--clip-frames", type=int, help=f"frames a clip (default: as in `{TEMPLATE}`)")
     command.add_argument("--run", action="store_true", help="append to `run.datasets`, for `dvc repro`")
+    command = commands.add_parser(
+        "annotate", help="check and correct a set's truth in the browser", epilog="example: physpipe annotate marbles"
+    )
+    command.set_defaults(command=annotate)
+    command.add_argument("name", metavar="NAME", help="of a filmed data set whose clips are made (`dvc repro`)")
+    command.add_argument("--port", type=int, default=PORT, help=f"of the page, on this machine alone (default: {PORT})")
+    command.add_argument("--no-browser", dest="browser", action="store_false", help="print the address, open nothing")
     return parser
 
 
