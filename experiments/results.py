@@ -2,7 +2,8 @@
 
     python -m experiments.results --seeds 0,1,2 --jobs 1
 
-Writes docs/results/trackers.json and docs/results.md. May be stopped and started again: what has run stays.
+Writes docs/results/trackers.json and docs/results.md. May be stopped and started again: what has run stays, and rows of
+an earlier commit stand until they are measured again.
 """
 
 import argparse
@@ -85,6 +86,12 @@ def collect(
     return table
 
 
+def kept(known: Table, new: Table) -> Table:
+    """The new rows, and those of before that were not measured again; each says its commit."""
+    names = [*new, *(name for name in known if name not in new)]
+    return {name: {**known.get(name, {}), **new.get(name, {})} for name in names}
+
+
 def _about(found: Mapping[int, Result]) -> Row:
     times = [each.time_s for each in found.values()]
     return {
@@ -118,7 +125,8 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit("stopped; the same command goes on from here")
     speed = json.loads(SPEED.read_text()) if SPEED.is_file() else {"rates": {}, "machine": None}
-    table = collect(wanted, results, speed["rates"])
+    known = json.loads(JSON.read_text()) if JSON.is_file() else {}
+    table = kept(known, collect(wanted, results, speed["rates"]))
     told = {key[0]: reason for key, each in wanted.items() for other, reason in failed.items() if each == other}
     unrun |= {name: f"failed: {told[name]}" if name in told else "not run yet" for name in names if name not in table}
     JSON.parent.mkdir(parents=True, exist_ok=True)

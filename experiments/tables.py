@@ -33,7 +33,8 @@ HEAD = """# Results
 
 Written by `make results` from docs/results/trackers.json, which holds more. Mean over seeds, with the worst seed in
 brackets where seeds differ; test clips only, in pixels of a 128-px frame. "paper" is the figure printed in Ehrhardt et
-al. 2018; for a simulated stand-in, that of the real set.
+al. 2018; for a simulated stand-in, that of the real set. Rows of an earlier commit stand until they are measured again;
+the JSON names each row's.
 
 `unsupervised` finds one object after the other and is told how many there are; `unsupervised_joint` finds all at once
 and is told nothing; `_unrefined` are the same before positions are moved to the objects' middles. The others learn

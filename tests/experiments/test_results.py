@@ -5,7 +5,7 @@ from pathlib import Path
 import yaml
 
 from experiments.records import Result
-from experiments.results import collect, experiments, runnable
+from experiments.results import collect, experiments, kept, runnable
 from experiments.tables import page, verdict
 
 DATASETS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["datasets"]
@@ -93,3 +93,10 @@ def test_the_verdict_is_between_ours_and_tools_that_learn_nothing():
     assert "In mean `lab` wins" in lost
     assert "In 99th percentile ours is as good" in lost
     assert verdict({"unsupervised": {"mean_px": None}}).startswith("No tool")
+
+
+def test_rows_stand_until_they_are_measured_again():
+    before = {"bowls": {"lab": {"commit": "old"}, "knn_blob": {"commit": "old"}}, "tray": {"lab": {"commit": "old"}}}
+    after = kept(before, {"bowls": {"lab": {"commit": "new"}}})
+    assert after["bowls"] == {"lab": {"commit": "new"}, "knn_blob": {"commit": "old"}}
+    assert after["tray"] == before["tray"]
