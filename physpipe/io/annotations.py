@@ -169,6 +169,7 @@ def _on_clips(reference: pd.DataFrame, clips: ClipSet) -> pd.DataFrame:
     shown = clips.table[clips.table["status"] == "ok"]
     given = reference.rename(columns={"frame": "source_frame"})
     rows = shown.merge(given.assign(tag=given.get("tag", "")), on=["source", "source_frame"])
+    rows = rows.astype({"x": float, "y": float})
     for clip, mine in rows.groupby("clip"):
         rows.loc[mine.index, ["x", "y"]] = clips.geometry(str(clip)).to_clip(mine[["x", "y"]])
     rows.loc[_outside(rows, rows), ["x", "y"]] = np.nan

@@ -61,7 +61,7 @@ def link(places: Sequence[Floats], scores: Sequence[Floats], params: LinkParams,
         living = [track for track in living if track.frames]
         living += born
     shown = [each for each in ended + living if len(each.detected) >= params.least_share * len(places)]
-    shown.sort(key=lambda track: (-sum(track.score), track.frames[0]))
+    shown.sort(key=lambda track: (-track.sureness(), track.frames[0]))
     return sorted((track.trajectory(len(places), params.still_px) for track in shown), key=lambda each: each.still)
 
 

@@ -18,6 +18,7 @@ class Track:
     xy: list[Floats]
     """(2,) pixels at each of `frames`."""
     score: list[float]
+    """Share of the heat map where it was detected, else how well its look fits."""
     detected: list[int]
     """Frames of a detection; in the others the track was sought by its look."""
     doubts: set[int] = field(default_factory=set)
@@ -40,6 +41,11 @@ class Track:
         self.score.append(score)
         if detected:
             self.detected.append(frame)
+
+    def sureness(self) -> float:
+        """Sum of the heat map's shares; the fit of a look is none, for a mark on the ground fits best of all."""
+        detected = set(self.detected)
+        return sum(score for frame, score in zip(self.frames, self.score, strict=True) if frame in detected)
 
     def go_on_as(self, other: "Track") -> None:
         """Takes over all that `other` has, which proved to be the same object and is empty afterwards."""

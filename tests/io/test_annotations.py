@@ -130,6 +130,12 @@ def test_reference_positions_come_back_to_the_same_source_pixels(tmp_path: Path,
     assert set(reference["tag"]) == {"hand"}
 
 
+def test_a_reference_of_whole_numbers_is_read_like_any_other(tmp_path: Path, clips: ClipSet) -> None:
+    text = "source,object,frame,x,y\nstill.mp4,0,0,130,70\nstill.mp4,0,1,131,70\n"
+    reference = annotations.load(written(tmp_path / "said", "reference.csv", text), clips).reference
+    assert reference["x"].diff().iloc[1] == pytest.approx(0.25)  # clip pixels are four source pixels wide
+
+
 def test_an_object_beyond_the_crop_is_out_of_sight(tmp_path: Path, clips: ClipSet) -> None:
     text = "source,object,frame,x,y\nstill.mp4,0,0,99,70\nstill.mp4,0,1,100,70\nstill.mp4,0,2,,\n"
     reference = annotations.load(written(tmp_path / "said", "reference.csv", text), clips).reference

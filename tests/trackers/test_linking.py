@@ -109,6 +109,16 @@ def test_a_track_that_lost_sight_goes_on_as_the_one_that_began_in_its_place():
     assert found[0].ambiguous[15]
 
 
+def test_how_well_a_look_fits_makes_no_track_surer():
+    """A mark on the ground that is seen now and then is found again by its look in every frame, and fits perfectly."""
+    ball, mark = straight((5, 5), (1, 0.5)), straight((50, 35), (-0.5, 0))
+    mark[1::2] = np.nan
+    places, scores = detections(ball, mark)
+    found = link(places, [each / 3 for each in scores], LINKS, lambda track, frame: (track.expected(frame, 2), 1.0))
+    np.testing.assert_allclose(found[0].xy, ball, atol=1e-5)
+    assert found[1].score[1::2].min() == 1
+
+
 def test_what_never_moves_comes_last_however_sure():
     rng = np.random.default_rng(0)
     wobbling = straight((50, 5), (0, 0)) + rng.uniform(-1.5, 1.5, (T, 2))
