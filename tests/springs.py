@@ -30,17 +30,20 @@ def spots(xy: Tensor) -> Tensor:
     return torch.stack([red, torch.zeros_like(red), torch.zeros_like(red)], dim=2)
 
 
-def distances_while_learning(net: Predictor, window: Window, steps: int) -> list[float]:
-    """Mean distance in px before each step of learning one batch by heart."""
+def distances_by_learning(net: Predictor, window: Window, steps: int) -> tuple[float, float]:
+    """Mean distance in px before and after learning one batch by heart."""
     optimiser = torch.optim.Adam(net.parameters(), lr=3e-3)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
-    distances = []
+    before = distance(net, window)
     for _ in range(steps):
         optimiser.zero_grad()
-        loss, _parts = net.loss(window, torch_generator(0))
-        with torch.no_grad():
-            distances.append((net(window.seen, window.asked_times).mean - window.target).norm(dim=-1).mean().item())
-        loss.backward()
+        net.loss(window, torch_generator(0))[0].backward()
         optimiser.step()
         schedule.step()
-    return distances
+    return before, distance(net, window)
+
+
+def distance(net: Predictor, window: Window) -> float:
+    """Mean distance of the forecasts in px, as a training sees them."""
+    with torch.no_grad():
+        return (net.train()(window.seen, window.asked_times).mean - window.target).norm(dim=-1).mean().item()

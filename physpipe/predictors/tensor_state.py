@@ -5,6 +5,9 @@ represent mechanics via long-term extrapolation and interpolation" (arXiv 1706.0
 that keeps the layout of the frame, one propagation layer used at every step, positions or displacements regressed from
 the state. The paper does not print the layers, so all sizes are ours. Ours too:
 
+- what is read are the coefficients of a law of motion: the displacement changes by c + D d + Q(d, d), d being the
+  displacement; on a terrain c is gravity's pull, D friction, Q what steers a path along a curved surface;
+- the first displacement is a weighted sum of the seen positions, the weights being read from them too;
 - the state of the last seen frame is shown again to every step, since a propagated state forgets the terrain;
 - with `follow`, the predicted position is marked on the grid and the state read there;
 - with `objects_alike`, objects share the weights that mark them, and their marks are averaged.
@@ -18,9 +21,16 @@ from pydantic import Field
 from torch import Tensor, nn
 
 from physpipe.predictors.base import Forecast, Predictor, Seen
-from physpipe.predictors.layers import Residual, bilinear_weights, everywhere, offsets_from, read_at
+from physpipe.predictors.layers import Residual, bilinear_weights, everywhere, offsets_from, read_at, zero_reader
 from physpipe.predictors.scene import SPEED, Scene, SceneEncoder, SceneParams, apart, together
 from physpipe.predictors.symmetry import mean_over_symmetries
+
+CHANGE = 1 / 128
+"""A lively change of a displacement a frame, in halves of the frame's longer side; brings outputs near 1."""
+WEIGHT = 0.3
+"""A lively weight of a seen position; the least-squares slope through four has 0.3 at its ends."""
+POWERS = 6
+"""Terms of a quadratic form in a displacement: 1, x, y, x^2, x y, y^2."""
 
 
 class TensorStateParams(SceneParams):
@@ -62,6 +72,8 @@ class TensorState(Predictor):
         self.remind = nn.Conv2d(C, C, 3, padding=1)
         self.mark = nn.Conv2d(5 if params.objects_alike else 5 * objects, C, 3, padding=1)
         self.propagate = Residual(C)
+        self.start = zero_reader(2 * C + 4 * self.seen_frames, params.hidden, outputs=2 * (self.seen_frames + 1))
+        self.law = zero_reader(self.look_size, params.hidden, outputs=2 * POWERS)
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
         if self.symmetric and not self.training:
@@ -111,9 +123,21 @@ class TensorState(Predictor):
         read = [read_at(state, weights), mean, read_at(scene.state, weights)]
         return torch.cat([*read, known.place, known.displacement / SPEED], dim=2)
 
-    @abstractmethod
     def _begin(self, scene: Scene) -> Motion:
-        """The motion at the last seen frame."""
+        """The tracks' own last position and displacement, mended by what is seen."""
+        places, last = scene.places, scene.places[:, -1]
+        weights = bilinear_weights(last, scene.grid, scene.unit.aspect)
+        past = ((places - last.unsqueeze(1)) / SPEED).transpose(1, 2).flatten(2)
+        read = [read_at(scene.state, weights), scene.whole, past, places.transpose(1, 2).flatten(2)]
+        mend = self.start(torch.cat(read, dim=2)).float().unflatten(2, (2, self.seen_frames + 1))
+        earlier = (places[:, :-1] - last.unsqueeze(1)).transpose(1, 2)  # (B, K, T0 - 1, 2)
+        mended = CHANGE * mend[..., :2] + WEIGHT * mend[..., 2:] @ earlier  # (B, K, 2, 2): position, displacement
+        return Motion(last + mended[:, :, 0], scene.velocity() + mended[:, :, 1], step=0)
+
+    def _change(self, look: Tensor, known: Motion) -> Tensor:
+        """(B, K, 2) by which the displacement changes in a frame, by the law of motion that is read."""
+        law = self.law(look).float().unflatten(2, (2, POWERS))
+        return CHANGE * (law @ _powers(known.displacement / SPEED).unsqueeze(3)).squeeze(3)
 
     @abstractmethod
     def _move(self, look: Tensor, known: Motion, now: Motion) -> Motion:
@@ -122,3 +146,9 @@ class TensorState(Predictor):
     def _answer(self, scene: Scene, path: Tensor, looks: Tensor, ahead: Tensor) -> Forecast:
         """The forecast `ahead` (B, N) frames after the last seen one, from `path` and `looks` there."""
         return Forecast(scene.unit.to_px(path))
+
+
+def _powers(displacement: Tensor) -> Tensor:
+    """(..., POWERS) terms of a quadratic form in `displacement` (..., 2)."""
+    x, y = displacement.unbind(-1)
+    return torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)

@@ -18,7 +18,7 @@ STATE = {"stem": 8, "channels": 8, "hidden": 8, "follow": True, "symmetric": Tru
 def interpnet():
     torch.manual_seed(0)
     net = InterpNet(InterpNetParams(**STATE, first_state=1.0), 1)
-    torch.nn.init.normal_(net.change[-1].weight)
+    torch.nn.init.normal_(net.law[-1].weight)
     return net
 
 
@@ -42,7 +42,7 @@ def test_a_forecast_ignores_everything_after_the_seen_frames(falling_balls):
     found, table = falling_balls()
     torch.manual_seed(0)
     net = DispNet(TensorStateParams(**STATE), 1)
-    torch.nn.init.normal_(net.change[-1].weight)
+    torch.nn.init.normal_(net.law[-1].weight)
     before = forecast(net, found, table, "test", HORIZON, "dispnet").table
     later = table["frame"] >= net.seen_frames
     for name in found.names("test"):

@@ -13,7 +13,7 @@ def pulled(objects: int = 1, **changed: object) -> DispNet:
     torch.manual_seed(0)
     net = DispNet(TensorStateParams(**{**STATE, **changed}), objects)
     torch.manual_seed(1)
-    torch.nn.init.normal_(net.change[-1].weight)
+    torch.nn.init.normal_(net.law[-1].weight)
     return net
 
 
