@@ -14,6 +14,8 @@ from physpipe.flow_learning.film import as_batch, draw_pairs
 from physpipe.flow_learning.flow import FlowParams
 from physpipe.flownet.network import CorrFlow
 from physpipe.ingest.dataset import IngestParams
+from physpipe.predictor_learning.predicting import learned_params, predictor_class
+from physpipe.predictors.base import Seen, Window
 from physpipe.predictors.horizon import PredictParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
@@ -44,6 +46,27 @@ def test_every_simulated_set_names_presets_that_exist_in_each_of_its_sizes(name)
     for size in simulated.sizes:
         world = simulated.model_copy(update={"size": size}).world(read("presets", PresetsParams, PATH), name)
         assert world.balls.count == read(f"datasets.{name}.motion", ObjectsParams, PATH).objects
+
+
+@pytest.mark.parametrize("name", list(PARAMS["predictors"]))
+def test_every_predictor_s_section_builds_one_that_takes_a_step(name):
+    kind = predictor_class(read_value(f"predictors.{name}.kind", PATH))
+    predictor = kind(read(f"predictors.{name}", learned_params(kind), PATH).model, 1)
+    assert sum(each.numel() for each in predictor.parameters()) <= 1_000_000
+    film = torch.rand(2, kind.seen_frames + kind.sees_end, 3, 64, 64, generator=torch_generator(0))
+    times = torch.arange(kind.seen_frames + 2.0).expand(2, -1)
+    seen_times = times[:, [*range(kind.seen_frames), *([-1] if kind.sees_end else [])]]
+    seen = Seen(film, torch.full((2, kind.seen_frames, 1, 2), 30.0), seen_times)
+    batch = Window(seen, times[:, -2:], torch.full((2, 2, 1, 2), 30.0))
+    loss, _ = predictor.loss(batch, torch_generator(1))
+    loss.backward()
+    assert torch.isfinite(loss)
+
+
+def test_only_sets_of_short_film_have_no_interpolation():
+    reach = {name: read(f"datasets.{name}.predict", PredictParams, PATH) for name in PARAMS["datasets"]}
+    assert {name for name, each in reach.items() if each.interpolation is None} == {"pendulum", "tray", "bounce"}
+    assert all(each.interpolation == 2 * each.horizon for each in reach.values() if each.interpolation)
 
 
 def test_every_preset_is_used():

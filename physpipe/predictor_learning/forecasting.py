@@ -12,7 +12,7 @@ from physpipe.core.errors import InputError
 from physpipe.core.progress import progress
 from physpipe.io import forecasts, tracks
 from physpipe.io.clips import TABLE, ClipSet, Split
-from physpipe.predictor_learning.windows import as_input
+from physpipe.predictor_learning.windows import KEYS, as_input
 from physpipe.predictors.base import Forecast, Predictor, Seen
 
 TOGETHER = 32
@@ -30,25 +30,36 @@ class Forecasts:
 
 
 def forecast(
-    predictor: Predictor, clips: ClipSet, table: pd.DataFrame, split: Split, horizon: int, what: str
+    predictor: Predictor,
+    clips: ClipSet,
+    table: pd.DataFrame,
+    split: Split,
+    horizon: int,
+    what: str,
+    end: int | None = None,
 ) -> Forecasts:
     """Forecasts of frames T0 to 4 T (T = `horizon`) or to each clip's end, from its frames 0 to T0 - 1.
 
-    Raises InputError when no clip of the split reaches frame T, or its tracks lack a clip.
+    A predictor that sees the end is shown frame `end` too and forecasts up to it; clips without it are left out.
+    Raises InputError when no clip of the split reaches frame T (or `end`), or its tracks lack a clip.
     """
+    needed, last = horizon, HORIZONS * horizon
+    if predictor.sees_end:
+        assert end is not None
+        needed = last = end
     names = clips.names(split)
     lengths = {name: len(clips.rows(name)) for name in names}
-    if max(lengths.values(), default=0) <= horizon:
-        reason = f"no {split} clip reaches frame {horizon}"
-        raise InputError(clips.folder / TABLE, reason, "lower `predict.horizon` or give longer clips")
+    if max(lengths.values(), default=0) <= needed:
+        reason = f"no {split} clip reaches frame {needed}"
+        raise InputError(clips.folder / TABLE, reason, f"lower {KEYS} or give longer clips")
     starts = _starts(clips, table, names, predictor.seen_frames)
-    usable = [name for name in names if name in starts]
+    usable = [name for name in names if name in starts and (lengths[name] > needed or not predictor.sees_end)]
     parts = [forecasts.empty()]
     for first in progress(range(0, len(usable), TOGETHER), what):
         together = usable[first : first + TOGETHER]
-        found = _forecast_batch(predictor, clips, together, starts, HORIZONS * horizon)
+        found = _forecast_batch(predictor, clips, together, starts, last)
         for i, name in enumerate(together):
-            stop = min(HORIZONS * horizon + 1, lengths[name])
+            stop = min(last + 1, lengths[name])
             parts.append(_rows(name, predictor.seen_frames, stop, found, i))
     return Forecasts(pd.concat(parts, ignore_index=True), len(names) - len(usable))
 
@@ -67,12 +78,13 @@ def _forecast_batch(
     predictor: Predictor, clips: ClipSet, names: list[str], starts: dict[str, NDArray[np.float32]], last: int
 ) -> Forecast:
     T0 = predictor.seen_frames
-    frames = as_input(np.stack([clips.frames(name)[:T0] for name in names]))
+    seen = [*range(T0), last] if predictor.sees_end else list(range(T0))
+    frames = as_input(np.stack([clips.frames(name)[seen] for name in names]))
     xy = torch.from_numpy(np.stack([starts[name] for name in names])).to(device())
     times = torch.arange(last + 1, dtype=torch.float32, device=device()).expand(len(names), -1)
     predictor.to(device()).eval()
     with torch.no_grad():
-        return predictor(Seen(frames, xy, times[:, :T0]), times[:, T0:])
+        return predictor(Seen(frames, xy, times[:, seen]), times[:, T0:])
 
 
 def _rows(clip: str, seen_frames: int, stop: int, found: Forecast, i: int) -> pd.DataFrame:

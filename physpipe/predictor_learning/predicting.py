@@ -1,9 +1,9 @@
 """Learning a predictor from tracks, keeping it in a file, and taking it out again."""
 
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import pandas as pd
-import torch
 from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
@@ -14,47 +14,69 @@ from physpipe.learning.training import FitParams, fit
 from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor
+from physpipe.predictors.horizon import TrainedTo
 
 WEIGHTS, CURVE = "weights.pt", "curve.csv"
 
 
-def predictor_class(name: str) -> type[Predictor]:
-    """The class of that name; raises InputError for an unknown one."""
-    if name not in PREDICTORS:
-        raise InputError(name, "no such predictor", f"use one of {', '.join(PREDICTORS)}")
-    return PREDICTORS[name]
+Model = TypeVar("Model", bound=Section)
+
+
+def predictor_class(kind: str) -> type[Predictor]:
+    """The class of that kind; raises InputError for an unknown one."""
+    if kind not in PREDICTORS:
+        raise InputError(kind, "no such kind of predictor", f"use one of {', '.join(PREDICTORS)}")
+    return PREDICTORS[kind]
+
+
+class LearnedParams(Section, Generic[Model]):
+    """One section of `predictors`: what it is, how far it learns to forecast, and how."""
+
+    kind: str
+    """Key of PREDICTORS."""
+    trained_to: TrainedTo
+    """How far its training reaches: to the data set's `predict.horizon`, or to its `predict.interpolation`."""
+    model: Model
+    windows: WindowParams
+    fit: FitParams
+
+
+def learned_params(kind: type[Predictor]) -> type[LearnedParams]:
+    """The section's class for that class of predictors."""
+    return LearnedParams[kind.Params]  # type: ignore[name-defined]
 
 
 def learn_predictor(
     name: str,
-    params: tuple[Section, FitParams, WindowParams],
+    params: LearnedParams,
     clips: ClipSet,
     table: pd.DataFrame,
-    horizon: int,
+    last_frame: int,
     seed: int,
     checkpoint: Path,
 ) -> tuple[Predictor, pd.DataFrame]:
     """The predictor with the weights that forecast the validation clips best, and its learning curve.
 
-    `params`: of the model, of the fit, of the windows. Raises InputError when no window can be learned from.
+    `last_frame`: the last one that it learns to forecast. Raises InputError when no window can be learned from.
     """
-    kind = predictor_class(name)
-    model_params, fit_params, window_params = params
-    train = TrackWindows(clips, table, "train", kind.seen_frames, horizon)
-    valid = TrackWindows(clips, table, "valid", kind.seen_frames, horizon)
+    kind = predictor_class(params.kind)
+    train = TrackWindows(clips, table, "train", kind.seen_frames, last_frame, kind.sees_end)
+    valid = TrackWindows(clips, table, "valid", kind.seen_frames, last_frame, kind.sees_end)
     print(f"{name}: {len(train)} windows to learn from; {train.skipped} left out, an object is lost in them")
-    predictor = kind(model_params, train.objects)
-    checked = valid.evenly(window_params.valid_windows).tolist()
-    stretches = [checked[i : i + fit_params.batch_size] for i in range(0, len(checked), fit_params.batch_size)]
+    predictor = kind(params.model, train.objects)
+    checked = valid.evenly(params.windows.valid_windows).tolist()
+    size = params.fit.batch_size
+    stretches = [checked[i : i + size] for i in range(0, len(checked), size)]
 
     def validate() -> float:
-        return sum(len(each) * _error_px(predictor, valid, each) for each in stretches) / len(checked)
+        losses = [len(each) * predictor.validation_loss(valid.batch(each)).item() for each in stretches]
+        return sum(losses) / len(checked)
 
     curve = fit(
         predictor,
-        lambda generator: train.draw(fit_params.batch_size, window_params, generator),
+        lambda generator: train.draw(size, params.windows, generator),
         validate,
-        fit_params,
+        params.fit,
         seed,
         checkpoint,
         name,
@@ -62,18 +84,12 @@ def learn_predictor(
     return predictor, curve
 
 
-def _error_px(predictor: Predictor, windows: TrackWindows, numbers: list[int]) -> float:
-    """Mean distance from the tracks at frame T."""
-    batch = windows.batch(numbers)
-    last = predictor(batch.seen, batch.asked_times[:, -1:]).mean
-    return torch.linalg.vector_norm(last - batch.target[:, -1:], dim=-1).mean().item()
-
-
-def save_predictor(folder: Path, name: str, predictor: Predictor, params: Section, curve: pd.DataFrame) -> None:
+def save_predictor(folder: Path, name: str, predictor: Predictor, params: LearnedParams, curve: pd.DataFrame) -> None:
     """Writes weights.pt (with all that builds the model again) and curve.csv."""
     content = {
         "predictor": name,
-        "params": params.model_dump(),
+        "kind": params.kind,
+        "params": params.model.model_dump(),
         "objects": predictor.objects,
         "state": predictor.cpu().state_dict(),
     }
@@ -90,7 +106,7 @@ def load_predictor(folder: Path, name: str, objects: int) -> Predictor:
         raise InputError(path, f"holds `{content.get('predictor')}`, not `{name}`", again)
     if content["objects"] != objects:
         raise InputError(path, f"learned {content['objects']} objects; the tracks have {objects}", again)
-    kind = predictor_class(name)
+    kind = predictor_class(content["kind"])
     try:
         params = kind.Params.model_validate(content["params"])
     except ValidationError as error:

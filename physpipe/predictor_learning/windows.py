@@ -20,6 +20,10 @@ Symmetry = tuple[bool, bool, bool]
 """Mirrored in x, mirrored in y, x and y swapped: the eight together are all turns and mirrors of a square."""
 
 
+KEYS = "`predict.horizon` (`predict.interpolation` for what is trained to it)"
+"""What says how far a training reaches."""
+
+
 class WindowParams(Section):
     """What is drawn from the clips."""
 
@@ -34,15 +38,20 @@ class WindowParams(Section):
 class TrackWindows:
     """Every stretch of `horizon` + 1 frames of one split whose positions are all known.
 
-    Raises InputError when no clip is so long, when the predictor sees so many frames that none is left to forecast,
-    when clips differ in size or number of objects, or when the tracks lack a clip.
+    With `sees_end` the last frame of a stretch is seen too. Raises InputError when no clip is so long, when the
+    predictor sees so many frames that none is left to forecast, when clips differ in size or number of objects, or when
+    the tracks lack a clip.
     """
 
-    def __init__(self, clips: ClipSet, table: pd.DataFrame, split: Split, seen_frames: int, horizon: int):
+    def __init__(
+        self, clips: ClipSet, table: pd.DataFrame, split: Split, seen_frames: int, horizon: int, sees_end: bool = False
+    ):
         self.seen_frames, self.horizon = seen_frames, horizon
+        self.seen = [*range(seen_frames), horizon] if sees_end else list(range(seen_frames))
+        """Numbers of the seen frames within a stretch."""
         if horizon < seen_frames:
             reason = f"frame {horizon} is one of the {seen_frames} that the predictor sees"
-            raise InputError("params.yaml", reason, "raise `predict.horizon`")
+            raise InputError("params.yaml", reason, f"raise {KEYS}")
         self.height, self.width = common_size(clips)
         self.objects = tracks.object_count(clips.folder, table)
         """K, the same in every clip."""
@@ -59,7 +68,7 @@ class TrackWindows:
         """Windows left out because an object is lost in them."""
         if not len(self.index):
             reason = f"no {split} clip has {horizon + 1} consecutive frames with all objects tracked"
-            raise InputError(clips.folder / TABLE, reason, "lower `predict.horizon` or give longer clips")
+            raise InputError(clips.folder / TABLE, reason, f"lower {KEYS} or give longer clips")
 
     def __len__(self) -> int:
         return len(self.index)
@@ -77,7 +86,7 @@ class TrackWindows:
         xy = torch.from_numpy(np.stack([positions for _, positions in cut])).to(device())
         times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
         frames = as_input(np.stack([frames for frames, _ in cut]))
-        return Window(Seen(frames, xy[:, :T0], times[:, :T0]), times[:, -asked:], xy[:, T0:])
+        return Window(Seen(frames, xy[:, :T0], times[:, self.seen]), times[:, -asked:], xy[:, T0:])
 
     def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
         """`count` random windows, randomly mirrored (and turned, if square), with noise on the seen positions."""
@@ -99,8 +108,8 @@ class TrackWindows:
 
     def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         clip, at = self.index[number]
-        stop = at + self.horizon + 1
-        return self.frames[clip][at : at + self.seen_frames], self.xy[clip][at:stop]
+        frames = self.frames[clip][[at + each for each in self.seen]]
+        return frames, self.xy[clip][at : at + self.horizon + 1]
 
 
 def mirrored(

@@ -15,11 +15,11 @@ class Seen:
     """What a predictor may know; nothing of the frames that it is asked for."""
 
     frames: Tensor
-    """(B, T0, 3, H, W) RGB in [0, 1]."""
+    """(B, S, 3, H, W) RGB in [0, 1]; S = T0, and one more, the last, for a predictor that sees the end."""
     xy: Tensor
-    """(B, T0, K, 2) pixels."""
+    """(B, T0, K, 2) pixels; where the objects are at the end is not given."""
     times: Tensor
-    """(B, T0) frames since the first one seen."""
+    """(B, S) frames since the first one seen."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,11 @@ class Predictor(nn.Module, ABC):
     Params: ClassVar[type[Section]]
     """What configures it."""
     seen_frames: ClassVar[int]
-    """Consecutive frames that it sees (T0)."""
+    """Consecutive frames that it sees, with the positions in them (T0)."""
+    sees_end: ClassVar[bool] = False
+    """Whether it also sees the frame, not the positions, of the last time that it may be asked for."""
+    objects_alike: bool = False
+    """Whether permuting the objects permutes the forecast and changes nothing else."""
 
     def __init__(self, params: Section, objects: int):
         """`objects`: K, the number of objects in every clip."""
@@ -62,6 +66,15 @@ class Predictor(nn.Module, ABC):
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Mean distance from the target in pixels; its square would be ruled by the few wildest windows."""
-        missed = self(batch.seen, batch.asked_times).mean - batch.target
-        distance = (missed.square().sum(-1) + 1e-6).sqrt()  # px^2 that keep the gradient finite at 0
+        distance = distance_px(self(batch.seen, batch.asked_times).mean, batch.target)
         return distance.mean(), {"train_last_px": distance[:, -1].mean().item()}
+
+    def validation_loss(self, batch: Window) -> Tensor:
+        """What validation minimises: the mean distance from the target at the last time asked for, in pixels."""
+        last = self(batch.seen, batch.asked_times[:, -1:]).mean
+        return torch.linalg.vector_norm(last - batch.target[:, -1:], dim=-1).mean()
+
+
+def distance_px(found: Tensor, target: Tensor) -> Tensor:
+    """(...) distance of positions (..., 2) px, with a finite gradient at 0."""
+    return ((found - target).square().sum(-1) + 1e-6).sqrt()

@@ -1,10 +1,38 @@
 """Pieces of networks whose state is a grid over the frame."""
 
+from typing import NamedTuple
+
 import torch
 from torch import Tensor, nn
 
 GROUPS = 8
 """Groups of every group normalisation; widths are multiples of it."""
+
+
+class FrameUnit(NamedTuple):
+    """The networks' unit of length, half of the frame's longer side, from the frame's centre."""
+
+    px: Tensor
+    """() length of the unit in pixels."""
+    centre: Tensor
+    """(2,) pixels."""
+    aspect: Tensor
+    """(2,) the frame's (width, height) in the unit, at most 2."""
+
+    @classmethod
+    def of(cls, frames: Tensor) -> "FrameUnit":
+        """The unit for `frames` (..., H, W)."""
+        size = torch.tensor(frames.shape[:-3:-1], device=frames.device)
+        px = size.max() / 2
+        return cls(px, (size - 1) / 2, size / px)
+
+    def from_px(self, xy: Tensor) -> Tensor:
+        """Pixels (..., 2) in the unit."""
+        return (xy - self.centre) / self.px
+
+    def to_px(self, place: Tensor) -> Tensor:
+        """The inverse of `from_px`."""
+        return place * self.px + self.centre
 
 
 def normed_conv(inputs: int, outputs: int, kernel: int, stride: int) -> nn.Sequential:
@@ -30,9 +58,8 @@ class Residual(nn.Module):
 def bilinear_weights(place: Tensor, grid: tuple[int, int], aspect: Tensor) -> Tensor:
     """(B, M, h, w) share of each grid cell in the value at `place`; sums to 1, the edge going on outside.
 
-    `place` (B, M, 2): (x, y) from the frame's centre, 1 being half of the frame's longer side; `aspect` (2,):
-    the frame's (width, height) in that unit, at most 2. Weights rather than `grid_sample`, whose gradient has no
-    deterministic kernel on the GPU; the same weights mark a place on the grid.
+    `place` (B, M, 2) and `aspect` (2,) are in the unit of `FrameUnit`. Weights rather than `grid_sample`, whose
+    gradient has no deterministic kernel on the GPU; the same weights mark a place on the grid.
     """
     near = []
     for axis, cells in ((1, grid[0]), (0, grid[1])):
@@ -56,3 +83,38 @@ def offsets_from(place: Tensor, grid: tuple[int, int], aspect: Tensor) -> Tensor
 def read_at(field: Tensor, weights: Tensor) -> Tensor:
     """(B, M, C) values of `field` (B, C, h, w) at the M places of `bilinear_weights`."""
     return torch.einsum("bchw,bmhw->bmc", field.float(), weights)
+
+
+def everywhere(values: Tensor, grid: tuple[int, int]) -> Tensor:
+    """(B, M D, h, w) maps that hold each of `values` (B, M, D) everywhere."""
+    return values.flatten(1)[:, :, None, None].expand(-1, -1, *grid)
+
+
+class Locator(nn.Module):
+    """Positions regressed from a state: where its cells point to, weighted by how well each matches a query."""
+
+    def __init__(self, channels: int):
+        super().__init__()
+        self.point = nn.Conv2d(channels, 2, 1)
+
+    def forward(self, state: Tensor, queries: Tensor, aspect: Tensor) -> Tensor:
+        """(B, M, 2) in the unit of `FrameUnit`; `state` (B, C, h, w), `queries` (B, M, C)."""
+        B, C, h, w = state.shape
+        match = torch.einsum("bmc,bchw->bmhw", queries, state).float() / C**0.5
+        centres = offsets_from(torch.zeros(B, 1, 2, device=state.device), (h, w), aspect)
+        pointed = centres + self.point(state).float()  # (B, 2, h, w)
+        share = match.flatten(2).softmax(2).unsqueeze(2)  # no matrix product below: autocast would round positions
+        return (share * pointed.flatten(2).unsqueeze(1)).sum(3)
+
+
+def reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
+    """Perceptron of one hidden layer."""
+    return nn.Sequential(nn.Linear(inputs, hidden), nn.ReLU(), nn.Linear(hidden, outputs))
+
+
+def zero_reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
+    """Perceptron of two hidden layers that answers 0 before it has learned anything."""
+    last = nn.Linear(hidden, outputs)
+    nn.init.zeros_(last.weight)
+    nn.init.zeros_(last.bias)
+    return nn.Sequential(nn.Linear(inputs, hidden), nn.ReLU(), nn.Linear(hidden, hidden), nn.ReLU(), last)

@@ -18,6 +18,7 @@ class Persistence(Predictor):
 
     Params = NoParams
     seen_frames = 4
+    objects_alike = True
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
         return Forecast(seen.xy[:, -1:].expand(-1, asked_times.shape[1], -1, -1))
@@ -28,6 +29,7 @@ class Polynomial(Predictor):
 
     Params = NoParams
     seen_frames = 10
+    objects_alike = True
     degree: ClassVar[int]
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:

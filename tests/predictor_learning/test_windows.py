@@ -42,9 +42,9 @@ def made(folder, height=20, width=28, lost=()):
     return ClipSet(folder), pd.concat(tables)
 
 
-def windows(folder, split="train", seen_frames=4, horizon=8, **world):
+def windows(folder, split="train", seen_frames=4, horizon=8, sees_end=False, **world):
     found, table = made(folder, **world)
-    return TrackWindows(found, table, split, seen_frames, horizon)
+    return TrackWindows(found, table, split, seen_frames, horizon, sees_end)
 
 
 def drawing(noise_px=0.0, first_share=0.0):
@@ -71,6 +71,26 @@ def test_seen_frames_show_the_objects_at_the_seen_positions(tmp_path):
     for frames, xy in zip(batch.seen.frames, batch.seen.xy, strict=True):
         for k in range(OBJECTS):
             np.testing.assert_array_equal(lit(frames.permute(0, 2, 3, 1).numpy(), k), xy[:, k].numpy())
+
+
+def test_the_end_is_seen_by_a_frame_that_shows_the_last_target_and_by_no_position(tmp_path):
+    found = windows(tmp_path / "set", sees_end=True)
+    for batch in (found.batch([1, 6]), found.draw(16, drawing(), torch_generator(3))):
+        assert batch.seen.times[0].tolist() == [0, 1, 2, 3, 8]
+        assert batch.asked_times[0].tolist() == [4, 5, 6, 7, 8]
+        assert batch.seen.xy.shape[1] == 4
+        ends = torch.cat([batch.seen.xy, batch.target[:, -1:]], 1)
+        for frames, xy in zip(batch.seen.frames, ends, strict=True):
+            for k in range(OBJECTS):
+                np.testing.assert_array_equal(lit(frames.permute(0, 2, 3, 1).numpy(), k), xy[:, k].numpy())
+
+
+def test_seeing_the_end_changes_no_draw(tmp_path):
+    plain, ending = (windows(tmp_path / str(sees_end), sees_end=sees_end) for sees_end in (False, True))
+    drawn = [each.draw(16, drawing(noise_px=0.5), torch_generator(5, 7)) for each in (plain, ending)]
+    assert torch.equal(drawn[0].target, drawn[1].target)
+    assert torch.equal(drawn[0].seen.xy, drawn[1].seen.xy)
+    assert torch.equal(drawn[0].seen.frames, drawn[1].seen.frames[:, :4])
 
 
 @pytest.mark.parametrize("how", SYMMETRIES)

@@ -1,6 +1,15 @@
 import torch
 
-from physpipe.predictors.layers import Residual, bilinear_weights, normed_conv, offsets_from, read_at
+from physpipe.predictors.layers import (
+    FrameUnit,
+    Locator,
+    Residual,
+    bilinear_weights,
+    normed_conv,
+    offsets_from,
+    read_at,
+    zero_reader,
+)
 
 GRID = (4, 8)  # cells down, across
 ASPECT = torch.tensor([2.0, 1.0])  # a frame twice as wide as high: x in [-1, 1], y in [-1/2, 1/2]
@@ -46,3 +55,31 @@ def test_convolutions_divide_the_size_and_residuals_keep_it():
     torch.nn.init.zeros_(layer.second.weight)
     torch.nn.init.zeros_(layer.second.bias)
     torch.testing.assert_close(layer(state, state), state)
+
+
+def test_the_unit_is_half_of_the_longer_side_from_the_frames_centre():
+    unit = FrameUnit.of(torch.zeros(2, 3, 20, 40))
+    corners = torch.tensor([[-0.5, -0.5], [39.5, 19.5]])  # outer corners of the corner pixels
+    torch.testing.assert_close(unit.from_px(corners), torch.tensor([[-1.0, -0.5], [1.0, 0.5]]))
+    torch.testing.assert_close(unit.to_px(unit.from_px(corners)), corners)
+    torch.testing.assert_close(unit.aspect, ASPECT)
+
+
+def test_a_locator_finds_the_cell_that_matches_its_query_and_what_that_cell_points_to():
+    locate = Locator(channels=4)
+    torch.nn.init.zeros_(locate.point.weight)
+    torch.nn.init.zeros_(locate.point.bias)
+    state = torch.zeros(1, 4, *GRID)
+    state[0, 0, 3, 0], state[0, 1, 1, 6] = 9.0, 9.0
+    queries = 30 * torch.eye(4)[None, :3]
+    expected = torch.tensor([[[-0.875, 0.375], [0.625, -0.125], [0.0, 0.0]]])  # the third matches all cells alike
+    torch.testing.assert_close(locate(state, queries, ASPECT), expected)
+    with torch.no_grad():
+        locate.point.weight[0, 1] = 0.01  # cells like the second point to the right
+    expected[0, 1, 0] += 0.09
+    expected[0, 2, 0] += 0.09 / 32  # the mean over all cells
+    torch.testing.assert_close(locate(state, queries, ASPECT), expected)
+
+
+def test_a_zero_reader_answers_zero():
+    assert zero_reader(5, 7, 3)(torch.randn(2, 5)).tolist() == [[0, 0, 0], [0, 0, 0]]

@@ -1,0 +1,23 @@
+"""Bivariate Gaussians: built from eigenvalues and an angle, and judged by their likelihood."""
+
+import math
+
+import torch
+from torch import Tensor
+
+
+def covariance(std: Tensor, angle: Tensor) -> Tensor:
+    """(..., 2, 2) with the standard deviations `std` (..., 2) along an axis turned by `angle` (...), and across it."""
+    along, across = std.square().unbind(-1)
+    middle, half = (along + across) / 2, (along - across) / 2
+    lean, slant = half * torch.cos(2 * angle), half * torch.sin(2 * angle)
+    return torch.stack([torch.stack([middle + lean, slant], -1), torch.stack([slant, middle - lean], -1)], -2)
+
+
+def nll_nats(mean: Tensor, cov: Tensor, target: Tensor) -> Tensor:
+    """(...) negative log density of `target` (..., 2); `cov` (..., 2, 2). In float64, as flat ellipses need it."""
+    cov, (x, y) = cov.double(), (target.double() - mean.double()).unbind(-1)
+    xx, xy, yy = cov[..., 0, 0], cov[..., 0, 1], cov[..., 1, 1]
+    determinant = xx * yy - xy.square()
+    squared = (yy * x.square() - 2 * xy * x * y + xx * y.square()) / determinant
+    return 0.5 * (squared + determinant.log()) + math.log(2 * math.pi)

@@ -1,0 +1,70 @@
+"""InterpNet: DispNet that also sees the last frame, and fills in what happens between.
+
+Ehrhardt et al. 2018, section 4.4, and arXiv 1706.02179. Theirs: the first state is also made to tell the seen positions
+and the one at the end. Ours: how it does (as PosNet's states do), and that the end it tells of is shown to every step:
+where it lies from the object, at what speed it would be reached, and how soon.
+"""
+
+from dataclasses import replace
+
+import torch
+from pydantic import Field
+from torch import Tensor
+
+from physpipe.predictors.base import Seen, Window, distance_px
+from physpipe.predictors.dispnet import DispNet
+from physpipe.predictors.layers import Locator, bilinear_weights, read_at, reader
+from physpipe.predictors.scene import SPEED, Scene
+from physpipe.predictors.tensor_state import Motion, TensorStateParams
+
+
+class InterpNetParams(TensorStateParams):
+    """The state, and what it has to tell from the start."""
+
+    first_state: float = Field(ge=0)
+    """Weight of the mean distance of the positions that the first state tells."""
+
+
+class InterpNet(DispNet):
+    """Asked times end with the frame that is seen last."""
+
+    Params = InterpNetParams
+    sees_end = True
+    look_extra = 5
+
+    def __init__(self, params: InterpNetParams, objects: int):
+        super().__init__(params, objects)
+        C = params.channels
+        self.first_state = params.first_state
+        self.ask = reader(2 * C + 2, params.hidden, outputs=(self.seen_frames + 1) * C)
+        self.locate = Locator(C)
+
+    def _scene(self, seen: Seen) -> Scene:
+        scene = super()._scene(seen)
+        last = scene.places[:, -1]
+        here = read_at(scene.state, bilinear_weights(last, scene.grid, scene.unit.aspect))
+        asked = self.ask(torch.cat([here, scene.whole, last], dim=2)).unflatten(2, (self.seen_frames + 1, -1))
+        found = self.locate(scene.state, asked.transpose(1, 2).flatten(1, 2), scene.unit.aspect)
+        return replace(scene, regressed=found.unflatten(1, (self.seen_frames + 1, -1)))
+
+    def _look(self, scene: Scene, state: Tensor, weights: Tensor, known: Motion) -> Tensor:
+        assert scene.regressed is not None
+        way = scene.regressed[:, -1] - known.place
+        left = scene.times[:, -1:] - scene.last_time - known.step  # (B, 1) frames from there to the end
+        soon = 1 / left.clamp(min=1).unsqueeze(2)
+        hint = torch.cat([way, way * soon / SPEED, soon.expand(-1, self.objects, -1)], dim=2)
+        return torch.cat([hint, super()._look(scene, state, weights, known)], dim=2)
+
+    def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+        """Mean distance from the target, and from the positions that the first state has to tell, in pixels."""
+        scene = self._scene(batch.seen)
+        assert scene.regressed is not None
+        told = distance_px(scene.unit.to_px(scene.regressed), torch.cat([batch.seen.xy, batch.target[:, -1:]], 1))
+        distance = distance_px(self._forecast_from(scene, batch.asked_times).mean, batch.target)
+        parts = {"train_last_px": distance[:, -1].mean().item(), "train_end_px": told[:, -1].mean().item()}
+        return distance.mean() + self.first_state * told.mean(), parts
+
+    def validation_loss(self, batch: Window) -> Tensor:
+        """The mean distance at all times in pixels, since the last of them is seen."""
+        found = self(batch.seen, batch.asked_times).mean
+        return torch.linalg.vector_norm(found - batch.target, dim=-1).mean()
