@@ -1,6 +1,7 @@
 """What the commands' words have in common."""
 
 import argparse
+from pathlib import Path
 from typing import TypeAlias
 
 Words = argparse.Namespace
@@ -16,3 +17,8 @@ def command(commands: Commands, name: str, about: str, examples: str) -> argpars
         epilog="examples:\n" + "\n".join(f"  {line}" for line in examples.splitlines()),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+
+
+def out_of(words: argparse.ArgumentParser, default: str) -> None:
+    """Adds the word for the folder that a command writes."""
+    words.add_argument("--out", type=Path, metavar="FOLDER", help=f"new, or of an earlier export (default: {default})")
