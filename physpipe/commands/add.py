@@ -38,6 +38,7 @@ def register(commands: Commands) -> None:
     words.add_argument("--crop", type=_crop, metavar="L,T,W,H", help="box in pixels (default: around what moves)")
     words.add_argument("--clip-frames", type=int, help="frames a clip (default: as long as gives enough clips)")
     words.add_argument("--no-probe", action="store_true", help=f"take the values of `{section.TEMPLATE}` unseen")
+    words.add_argument("--pixels-per-metre", type=float, help="of the film, in the plane of the motion, for exports")
     words.add_argument("--run", action="store_true", help="append to `run.datasets`, for `dvc repro`")
 
 
@@ -79,6 +80,7 @@ def _changes(words: Words) -> dict[str, Any]:
     changes = {"ingest.fps": None, "ingest.source_fps": None, "ingest.crop": None} | _seen(words)
     said = {"ingest.fps": words.fps, "ingest.source_fps": words.source_fps, "ingest.crop": words.crop}
     said |= {"motion.objects": words.objects, "ingest.clip_frames": words.clip_frames}
+    said["scale.pixels_per_metre"] = words.pixels_per_metre
     if words.clip_frames is not None:
         said["ingest.min_frames"] = words.clip_frames
         if "predict.horizon" in changes:

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
 from physpipe.core.params import PARAMS, read
+from physpipe.exporting.scale import ScaleParams
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import params_file
 
@@ -28,10 +29,12 @@ def extended(text: str, name: str, changes: dict[str, Any]) -> str:
     """params.yaml's text with the new section; raises InputError for values that ingest would refuse."""
     result = params_file.with_section(text, "datasets", TEMPLATE, name, changes)
     try:
-        IngestParams.model_validate(yaml.safe_load(result)["datasets"][name]["ingest"])
+        section = yaml.safe_load(result)["datasets"][name]
+        IngestParams.model_validate(section["ingest"])
+        ScaleParams.model_validate(section.get("scale") or {"pixels_per_metre": None})
     except ValidationError as error:
         faults = [f"`{'.'.join(map(str, each['loc']))}`: {each['msg']}" for each in error.errors()]
-        raise InputError(PARAMS, f"ingest would refuse {'; '.join(faults)}", "correct the options") from None
+        raise InputError(PARAMS, f"these values would be refused: {'; '.join(faults)}", "correct the options") from None
     return result
 
 

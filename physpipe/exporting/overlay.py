@@ -20,6 +20,7 @@ LETTER_PX = 22.0
 TEXT_PART = 1 / 30
 """Height of letters over the picture's."""
 SMALLEST_TEXT_PX = 10.0
+RIM = (-1, 0, 1)
 FONT = cv2.FONT_HERSHEY_SIMPLEX
 Picture = NDArray[np.uint8]
 
@@ -61,6 +62,7 @@ def _film(
 
 def _write(picture: Picture, text: str, at: tuple[float, float], size_px: float, colour: str) -> None:
     """Text with a dark rim, its left bottom corner at (x, y)."""
-    spot, scale = (round(at[0]), round(at[1])), size_px / LETTER_PX
-    for ink, width in (("#000000", 3), (colour, 1)):
-        cv2.putText(picture, text, spot, FONT, scale, colours.rgb(ink), width, cv2.LINE_AA)
+    # A thicker black text below would do for a rim, but OpenCV 5 sets thicker letters wider apart.
+    for ink, dx, dy in (*(("#000000", dx, dy) for dx in RIM for dy in RIM), (colour, 0, 0)):
+        spot = (round(at[0]) + dx, round(at[1]) + dy)
+        cv2.putText(picture, text, spot, FONT, size_px / LETTER_PX, colours.rgb(ink), 1, cv2.LINE_AA)

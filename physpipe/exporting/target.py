@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from physpipe.core.errors import DiskFullError, InputError
+from physpipe.core.errors import InputError
 from physpipe.io import results
 from physpipe.io.atomic import replacing_folder
 
@@ -20,9 +20,7 @@ def exported(folder: Path, about: dict[str, Any]) -> Iterator[Path]:
     Raises InputError for a folder that holds anything else, or that cannot be written.
     """
     if folder.is_dir() and any(folder.iterdir()) and not (folder / MANIFEST).is_file():
-        raise InputError(
-            folder, f"holds other files (no {MANIFEST} of an earlier export)", "give a new folder by --out"
-        )
+        raise InputError(folder, f"holds other files, and no {MANIFEST} of an export", "give a new folder by --out")
     with writable(folder), replacing_folder(folder) as temporary:
         results.save_json(temporary / MANIFEST, about)
         yield temporary
@@ -30,11 +28,12 @@ def exported(folder: Path, about: dict[str, Any]) -> Iterator[Path]:
 
 @contextmanager
 def writable(path: Path) -> Iterator[None]:
-    """Turns the system's refusal to write at `path` into an InputError."""
+    """Turns the system's refusal to write at `path` into an InputError; other errors stay as they are."""
     try:
         yield
-    except (DiskFullError, FileNotFoundError):
-        raise
     except OSError as error:
-        reason = f"cannot be written ({error.strerror or error})"
-        raise InputError(path, reason, "give another place, or the right to write there") from None
+        place, refused = path.absolute(), Path(error.filename or "").absolute()
+        if not (error.filename and (refused in place.parents or refused.is_relative_to(place.parent))):
+            raise
+        reason = f"cannot be written ({error.strerror})"
+        raise InputError(path, reason, "give another place, or get the right to write there") from None
