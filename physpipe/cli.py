@@ -2,14 +2,13 @@
 
 import argparse
 import sys
+from importlib import import_module
 
 import shtab
 
-from physpipe.commands import add, doctor, export, overlay, probe
+from physpipe.commands.words import COMMANDS
 from physpipe.core.errors import InputError
 
-COMMANDS = (probe, add, doctor, export, overlay)
-"""Each module's `register` adds its words to the parser."""
 EPILOG = """\
 exit codes:
   0    done
@@ -33,7 +32,8 @@ def main() -> None:
     """Runs one command; a user's mistake ends as one line, not a traceback."""
     words = _parser().parse_args()
     try:
-        words.command(words)
+        # By name, so that help and completion need not wait for PyTorch, nor `doctor` for a sound installation.
+        import_module(f"physpipe.commands.{words.command}").run(words)
     except InputError as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
@@ -44,9 +44,11 @@ def _parser() -> argparse.ArgumentParser:
     plain = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(prog="physpipe", description=__doc__, epilog=EPILOG, formatter_class=plain)
     shtab.add_argument_to(parser, help="print the completion script of that shell")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND", title="commands")
-    for each in COMMANDS:
-        each.register(commands)
+    commands = parser.add_subparsers(required=True, dest="command", metavar="COMMAND", title="commands")
+    for name, (about, examples, say) in COMMANDS.items():
+        epilog = "examples:\n" + "\n".join(f"  {line}" for line in examples.splitlines())
+        full = f"{about[0].upper()}{about[1:]}."
+        say(commands.add_parser(name, help=about, description=full, epilog=epilog, formatter_class=plain))
     return parser
 
 

@@ -1,15 +1,12 @@
 """`physpipe add`: film into the project, with values that fit it."""
 
-import argparse
 import re
 import sys
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-import shtab
-
 from physpipe.commands import section
-from physpipe.commands.words import Commands, Words, command
 from physpipe.core.errors import InputError
 from physpipe.core.params import PARAMS
 from physpipe.io import adding, folders, params_file
@@ -20,29 +17,8 @@ from physpipe.probing.advice import horizon
 from physpipe.probing.folder import probe
 from physpipe.probing.text import described
 
-EXAMPLES = """\
-physpipe add marbles ~/film
-physpipe add marbles ~/film --source-fps 240 --fps 80 --crop 420,0,1080,1080 --objects 2"""
 
-
-def register(commands: Commands) -> None:
-    """Adds the words of this command."""
-    words = command(commands, "add", "add a folder of film as a data set", EXAMPLES)
-    words.set_defaults(command=run)
-    words.add_argument("name", metavar="NAME", help="of the new data set")
-    folder = words.add_argument("folder", metavar="FOLDER", type=Path, help="of videos or images; stays as it is")
-    folder.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
-    words.add_argument("--source-fps", type=float, help="true rate, where the timestamps lie; images need it")
-    words.add_argument("--fps", type=float, help="rate of the clips (default: the film's own)")
-    words.add_argument("--objects", type=int, help="number of objects (default: as many as are seen)")
-    words.add_argument("--crop", type=_crop, metavar="L,T,W,H", help="box in pixels (default: around what moves)")
-    words.add_argument("--clip-frames", type=int, help="frames a clip (default: as long as gives enough clips)")
-    words.add_argument("--no-probe", action="store_true", help=f"take the values of `{section.TEMPLATE}` unseen")
-    words.add_argument("--pixels-per-metre", type=float, help="of the film, in the plane of the motion, for exports")
-    words.add_argument("--run", action="store_true", help="append to `run.datasets`, for `dvc repro`")
-
-
-def run(words: Words) -> None:
+def run(words: Namespace) -> None:
     """Film into data/raw, tables into data/annotations, a section into params.yaml."""
     name = words.name
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
@@ -63,19 +39,19 @@ def run(words: Words) -> None:
     _say_what_is_next(words, raw, annotations)
 
 
-def _say_what_is_next(words: Words, raw: Path, annotations: Path) -> None:
+def _say_what_is_next(words: Namespace, raw: Path, annotations: Path) -> None:
     name = words.name
     told = (raw / SPLIT_FILE).exists()
     shares = f"shares of `datasets.{name}.ingest.split`, whatever the folders are called; a {SPLIT_FILE} would decide"
     print(f"Train, valid and test: {raw / SPLIT_FILE if told else shares}.\nNext:")
     print(f"  dvc add {raw}")
-    alone = f"dvc exp run -S 'run.datasets=[{name}]' -S 'run.simulated=[]' -S 'run.supervised=[]'"
+    alone = f'dvc exp run -S "run.datasets=[{name}]" -S "run.simulated=[]" -S "run.supervised=[]"'
     print("  dvc repro" if words.run else f"  {alone}")
     if not (annotations / REFERENCE).exists() and not (words.folder / TEMPLATES).exists():
         print(f"To have errors measured, put boxes into {annotations / TEMPLATES} (clip names: data/clips/{name}).")
 
 
-def _changes(words: Words) -> dict[str, Any]:
+def _changes(words: Namespace) -> dict[str, Any]:
     """What differs from the template's section: what the user says, else what the film shows."""
     changes = {"ingest.fps": None, "ingest.source_fps": None, "ingest.crop": None} | _seen(words)
     said = {"ingest.fps": words.fps, "ingest.source_fps": words.source_fps, "ingest.crop": words.crop}
@@ -88,7 +64,7 @@ def _changes(words: Words) -> dict[str, Any]:
     return changes | {key: value for key, value in said.items() if value is not None}
 
 
-def _seen(words: Words) -> dict[str, Any]:
+def _seen(words: Namespace) -> dict[str, Any]:
     """What a look at the film suggests; nothing where it cannot be read, which ingest will name."""
     folders.recordings(words.folder)
     if words.no_probe:
@@ -104,10 +80,3 @@ def _seen(words: Words) -> dict[str, Any]:
         return {}
     print("\n".join(described(probed, like.size)), file=sys.stderr)
     return probed.advice.changes()
-
-
-def _crop(word: str) -> dict[str, int]:
-    values = word.split(",")
-    if len(values) != 4:
-        raise argparse.ArgumentTypeError("give left,top,width,height")
-    return dict(zip(("left", "top", "width", "height"), map(int, values), strict=True))

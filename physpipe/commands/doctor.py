@@ -1,31 +1,32 @@
 """`physpipe doctor`: a check-up of the machine and the project."""
 
 import sys
+from argparse import Namespace
 from collections import Counter
+from collections.abc import Iterator
 
-from physpipe.commands.words import Commands, Words, command
-from physpipe.health import machine, pipeline, project
-from physpipe.health.asking import ask
-from physpipe.health.finding import lines
-
-EXAMPLES = """\
-physpipe doctor
-physpipe doctor && dvc repro     runs only on a machine and a project without a problem"""
+from physpipe.health import machine
+from physpipe.health.finding import Finding, lines
 
 
-def register(commands: Commands) -> None:
-    """Adds the words of this command."""
-    words = command(commands, "doctor", "check this machine and this project, and say what would run again", EXAMPLES)
-    words.set_defaults(command=run)
-
-
-def run(words: Words) -> None:
+def run(words: Namespace) -> None:
     """Prints findings as they come; exit code 1 when one is a problem."""
     counts: Counter[str] = Counter()
-    for findings in (machine.check(), project.check(ask), pipeline.check(ask)):
-        for finding in findings:
-            counts[finding.level] += 1
-            print("\n".join(lines(finding)), flush=True)
-    print(f"\n{counts['problem']} problems, {counts['warning']} warnings")
+    for finding in _findings():
+        counts[finding.level] += 1
+        print("\n".join(lines(finding)), flush=True)
+    print(f"\n{counts['problem']} problems, {counts['warning']} warnings, {counts['runs']} kinds of stages would run")
     if counts["problem"]:
         sys.exit(1)
+
+
+def _findings() -> Iterator[Finding]:
+    yield from machine.check()
+    try:  # late, since it imports everything, and a check-up must survive what is broken
+        from physpipe.health import pipeline, project
+        from physpipe.health.asking import ask
+    except Exception as error:
+        yield Finding("problem", f"the library cannot be loaded ({error})", machine.INSTALL)
+        return
+    yield from project.check(ask)
+    yield from pipeline.check(ask)

@@ -1,9 +1,8 @@
 """`physpipe export`: tracks for other programs."""
 
-from pathlib import Path
+from argparse import Namespace
 
 from physpipe.commands.places import CLIPS, EXPORTS, TRACKS, known_set
-from physpipe.commands.words import Commands, Words, command, out_of
 from physpipe.core.ball import BallParams
 from physpipe.core.params import read
 from physpipe.exporting.formats import FORMATS
@@ -13,25 +12,8 @@ from physpipe.exporting.target import exported
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 
-EXAMPLES = """\
-physpipe export bowls --to csv
-physpipe export marbles --to mot --pixels source --out ~/marbles_mot
-physpipe export marbles --to csv --table data/truth/marbles.parquet"""
 
-
-def register(commands: Commands) -> None:
-    """Adds the words of this command."""
-    words = command(commands, "export", "write a set's tracks for other programs", EXAMPLES)
-    words.set_defaults(command=run)
-    words.add_argument("name", metavar="NAME", help="of the data set")
-    words.add_argument("--to", required=True, choices=list(FORMATS), help="format; see docs/conventions.md")
-    words.add_argument("--pixels", choices=("clip", "source"), default="clip", help="of the clips, or of the film")
-    words.add_argument("--table", type=Path, help="another track table of the set (default: the unsupervised tracks)")
-    words.add_argument("--pixels-per-metre", type=float, help="in the film (default: as in params.yaml)")
-    out_of(words, f"{EXPORTS / 'NAME' / 'FORMAT'}")
-
-
-def run(words: Words) -> None:
+def run(words: Namespace) -> None:
     """Writes a folder with the tracks and `about.json`."""
     name = known_set(words.name)
     path = words.table or TRACKS / f"{name}.parquet"

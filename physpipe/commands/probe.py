@@ -2,41 +2,27 @@
 
 import re
 import shlex
+from argparse import Namespace
 from pathlib import Path
 
 from physpipe.commands import section
-from physpipe.commands.words import Commands, Words, command
 from physpipe.core.params import PARAMS
+from physpipe.exporting.target import writable
 from physpipe.probing import sheet
 from physpipe.probing.advice import geometry
 from physpipe.probing.folder import probe
 from physpipe.probing.text import described
 
-EXAMPLES = """\
-physpipe probe ~/film
-physpipe probe ~/slow_motion --source-fps 240 --name marbles --preview marbles.png"""
 
-
-def register(commands: Commands) -> None:
-    """Adds the words of this command."""
-    words = command(
-        commands, "probe", "tell what a folder of film holds: rate, motion, objects, crop, what hurts", EXAMPLES
-    )
-    words.set_defaults(command=run)
-    words.add_argument("folder", metavar="FOLDER", type=Path, help="of videos or folders of images; stays as it is")
-    words.add_argument("--source-fps", type=float, help="true rate, where the timestamps lie; images need it")
-    words.add_argument("--name", help="of the section to print (default: the folder's)")
-    words.add_argument("--preview", type=Path, metavar="PNG", help="contact sheet (default: probe_NAME.png here)")
-
-
-def run(words: Words) -> None:
+def run(words: Namespace) -> None:
     """Prints what was found and the section to paste, writes the contact sheet."""
     like = section.template()
     name = words.name or _name(words.folder)
     probed = probe(words.folder, like.size, like.split, words.source_fps)
     crop = probed.advice.crop
     preview = words.preview or Path(f"probe_{name}.png")
-    sheet.save(preview, probed.found, [geometry(each, crop, like.size) for each in probed.found])
+    with writable(preview):
+        sheet.save(preview, probed.found, [geometry(each, crop, like.size) for each in probed.found])
     print("\n".join(described(probed, like.size)))
     print(f"The likely crop and what moves: {preview}")
     free = f"{name}_2" if section.exists(name) else name

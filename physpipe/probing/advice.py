@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,10 +14,10 @@ from physpipe.ingest.dataset import clip_name
 from physpipe.ingest.framing import CropParams
 from physpipe.ingest.recording import SHORTEST
 from physpipe.ingest.splits import SplitParams, drawn
-from physpipe.io.clips import SPLITS
+from physpipe.io.clips import SPLITS, Split
 from physpipe.probing.findings import Finding
 
-CLIP_FRAMES = (60, 48, 40, 32, 24, 20, 16, 12, 8)
+CLIP_FRAMES = (60, 48, 40, 32, 24, 20, 16, 14, 12, 11, 10, 9, 8)
 """Lengths of clips that are tried, the longest first."""
 FEWEST_CLIPS = 10
 """Fewer clips are too few to learn, choose and test with."""
@@ -37,6 +37,17 @@ FORECAST_FRAMES = 10
 """Frames that a forecast should reach at least, where clips are long enough."""
 
 
+class Cut(NamedTuple):
+    """How recordings are cut into clips."""
+
+    frames: int
+    """Of a clip."""
+    clips: int
+    """About how many of them there will be."""
+    empty: tuple[Split, ...]
+    """Splits that get none."""
+
+
 @dataclass(frozen=True)
 class Advice:
     """Values for the set's section of params.yaml; None leaves the choice to ingest."""
@@ -45,9 +56,7 @@ class Advice:
     source_fps: float | None
     crop: CropParams | None
     max_gap_s: float | None
-    clip_frames: int
-    clips: int
-    """About how many of them there will be."""
+    cut: Cut
     objects: int | None
     """None where recordings or frames do not agree."""
     radius_px: float | None
@@ -59,9 +68,9 @@ class Advice:
             "ingest.fps": self.fps,
             "ingest.source_fps": self.source_fps,
             "ingest.crop": None if self.crop is None else self.crop.model_dump(),
-            "ingest.clip_frames": self.clip_frames,
-            "ingest.min_frames": least_frames(self.clip_frames),
-            "predict.horizon": horizon(self.clip_frames),
+            "ingest.clip_frames": self.cut.frames,
+            "ingest.min_frames": least_frames(self.cut.frames),
+            "predict.horizon": horizon(self.cut.frames),
             "motion.objects": self.objects,
         }
         if self.max_gap_s is not None:
@@ -94,15 +103,13 @@ def advise(found: Sequence[Finding], size: int, shares: SplitParams | None, sour
     fps = _rate(found, rates, speeds)
     slowest = fps or min(rates)
     lengths = {each.stem: _frames(each, rate, fps) for each, rate in zip(found, rates, strict=True)}
-    clip_frames, clips = _cut(lengths, shares)
     radii = [each.diameter_px / 2 * _clip_px(each, crop, size) for each in found if each.movers is not None]
     return Advice(
         fps=fps,
         source_fps=true_fps,
         crop=crop,
         max_gap_s=round(GAP_FRAMES / slowest, 2) if np.isfinite(slowest) else None,
-        clip_frames=clip_frames,
-        clips=clips,
+        cut=_cut(lengths, shares),
         objects=_agreed(found),
         radius_px=round(median(radii), 1) if radii else None,
     )
@@ -165,15 +172,14 @@ def _frames(finding: Finding, rate: float, fps: float | None) -> int:
     return int(finding.film.clock.frames * (last - first) * (1.0 if fps is None else fps / rate))
 
 
-def _cut(lengths: dict[str, int], shares: SplitParams | None) -> tuple[int, int]:
-    """Frames a clip and number of clips: the longest of which there are enough, some for each split."""
-    names: list[str] = []
-    for count in CLIP_FRAMES:
-        names = [clip_name(stem, part) for stem, length in lengths.items() for part in range(_clips(length, count))]
-        splits = {drawn(name, shares) for name in names} if shares else set(SPLITS)
-        if len(names) >= FEWEST_CLIPS and splits == set(SPLITS):
-            return count, len(names)
-    return CLIP_FRAMES[-1], len(names)
+def _cut(lengths: dict[str, int], shares: SplitParams | None) -> Cut:
+    """The longest clips of which there are some for each split, and enough; where not both can be, some for each."""
+    options = []
+    for frames in CLIP_FRAMES:
+        names = [clip_name(stem, part) for stem, length in lengths.items() for part in range(_clips(length, frames))]
+        filled = {drawn(name, shares) for name in names} if shares else set(SPLITS)
+        options.append(Cut(frames, len(names), tuple(split for split in SPLITS if split not in filled)))
+    return max(options, key=lambda cut: (-len(cut.empty), cut.clips >= FEWEST_CLIPS, cut.frames))
 
 
 def _clips(length: int, clip_frames: int) -> int:

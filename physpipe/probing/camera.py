@@ -10,12 +10,20 @@ LONGEST_PX = 240
 """Longest side of the pictures by which shifts are measured."""
 BETTER = 0.95
 """A shift must leave less than this part of the difference that there was."""
+LEAST_GREY = 0.05
+"""And by so many grey levels less."""
+FAR_OUT = 8.0
+"""Times the mean difference; what differs more is left out when that is judged."""
 OUTLIER = 3.0
-"""Times the mean difference; what differs more moves by itself."""
+"""Times the usual difference; what differs more moves by itself."""
 CAP_GREY = 20.0
 """Grey levels beyond which a difference counts no more."""
 EDGES = 0.02
 """Share of the pixels, the steepest, that count as edges."""
+LEAST_STEEP = 2.0
+"""Grey levels a pixel; flatter slopes are no edges."""
+SLOPE_BLUR_PX2 = 0.5
+"""Square pixels, the blur that measuring a slope over three pixels adds."""
 REBLUR_PX = 1.5
 """Blur that is added to see how much there was."""
 Grey = NDArray[Any]
@@ -32,14 +40,27 @@ def shift(one: Grey, two: Grey) -> NDArray[np.float64]:
     factor = min(1.0, LONGEST_PX / max(one.shape))
     size = (round(one.shape[1] * factor), round(one.shape[0] * factor))
     small = [cv2.GaussianBlur(cv2.resize(each, size, interpolation=cv2.INTER_AREA), (0, 0), 1.0) for each in (one, two)]
-    light = small[1] / gain(*small)
-    window = cv2.createHanningWindow(size, cv2.CV_32F)
-    jump, _ = cv2.phaseCorrelate(small[0] - small[0].mean(), light - light.mean(), window)
-    still = np.zeros(2)
-    guess = min((still, np.array(jump)), key=lambda moved: _left_over(small[0], light, moved))
-    fine = _refined(small[0], light, guess)
-    better = _left_over(small[0], light, fine) < BETTER * _left_over(small[0], light, still)
-    return fine / factor if better else still
+    first, second = small[0], small[1] / gain(*small)
+    jump, _ = cv2.phaseCorrelate(_evened(first), _evened(second), cv2.createHanningWindow(size, cv2.CV_32F))
+    still, ground = np.zeros(2), _ground(first, second)
+    guess = min((still, np.array(jump)), key=lambda moved: _left_over(first, second, moved, ground))
+    fine = _refined(first, second, guess)
+    before, after = (_left_over(first, second, moved, ground) for moved in (still, fine))
+    return fine / factor if after < min(BETTER * before, before - LEAST_GREY) else still
+
+
+def _ground(one: Grey, two: Grey) -> NDArray[np.bool_]:
+    """What changes no more than usual: a ball alone before a wall is not taken for a moving camera."""
+    apart = np.abs(two - one)
+    outliers = (apart > max(FAR_OUT * float(apart.mean()), 1.0)).astype(np.uint8)
+    return ~cv2.dilate(outliers, np.ones((9, 9), np.uint8)).astype(bool)
+
+
+def _evened(image: Grey) -> Grey:
+    """Without what stands out, a ball before all: the ground is what tells how the camera moved."""
+    middle = np.median(image)
+    most = max(OUTLIER * float(np.median(np.abs(image - middle))), 1.0)
+    return np.clip(image - middle, -most, most)
 
 
 def _refined(one: Grey, two: Grey, guess: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -54,9 +75,9 @@ def _refined(one: Grey, two: Grey, guess: NDArray[np.float64]) -> NDArray[np.flo
         return guess
 
 
-def _left_over(one: Grey, two: Grey, moved: NDArray[np.float64]) -> float:
-    """Mean difference in grey levels that a shift leaves; what moves by itself counts no more than CAP each pixel."""
-    return float(np.minimum(np.abs(moved_back(two, moved) - one), CAP_GREY).mean())
+def _left_over(one: Grey, two: Grey, moved: NDArray[np.float64], ground: NDArray[np.bool_]) -> float:
+    """Mean difference in grey levels that a shift leaves on the `ground`, which is not empty; large ones are capped."""
+    return float(np.minimum(np.abs(moved_back(two, moved) - one), CAP_GREY)[ground].mean())
 
 
 def gain(one: Grey, two: Grey) -> float:
@@ -71,21 +92,18 @@ def moved_back(picture: NDArray[Any], by: NDArray[np.float64]) -> NDArray[Any]:
     return cv2.warpAffine(picture, to, picture.shape[1::-1], borderMode=cv2.BORDER_REPLICATE)
 
 
-def blur_px(image: Grey, where: NDArray[np.bool_] | None = None) -> float:
+def blur_px(image: Grey) -> float:
     """Standard deviation of the blur of the steepest edges, in pixels; NaN without edges.
 
     An edge of blur s, blurred by r once more, is less steep by the factor s / sqrt(s^2 + r^2) (Zhuo and Sim 2011).
     """
     steep = steepness(image)
     again = steepness(cv2.GaussianBlur(image, (0, 0), REBLUR_PX))
-    inside = np.ones(image.shape, bool) if where is None else where
-    if not inside.any():
-        return float("nan")
-    edges = inside & (steep >= np.quantile(steep[inside], 1 - EDGES)) & (steep > 2.0)
+    edges = (steep >= np.quantile(steep, 1 - EDGES)) & (steep > LEAST_STEEP)
     if not edges.any():
         return float("nan")
     ratio = float(np.median(steep[edges] / np.maximum(again[edges], 1e-6)))
-    return REBLUR_PX / np.sqrt(max(ratio**2 - 1, 1e-6))
+    return float(np.sqrt(max(REBLUR_PX**2 / max(ratio**2 - 1, 1e-6) - SLOPE_BLUR_PX2, 0)))
 
 
 def steepness(image: Grey) -> Grey:

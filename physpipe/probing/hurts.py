@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from physpipe.core.geometry import Geometry
 from physpipe.ingest.rates import WRONG_CLAIM
+from physpipe.io.split_file import SPLIT_FILE
 from physpipe.probing.advice import FEWEST_CLIPS, Advice
 from physpipe.probing.findings import Finding
 
@@ -99,6 +100,9 @@ def hurts_of_set(found: Sequence[Finding], advice: Advice) -> list[str]:
         said.append(f"rates from {min(rates):.4g} to {max(rates):.4g} frames/s: `fps` brings them to one")
     if len({each.movers.number for each in found if each.movers}) > 1:
         said.append("recordings do not agree on how many objects there are: give --objects, or make a set of each")
-    if advice.clips < FEWEST_CLIPS:
-        said.append(f"only about {advice.clips} clips of {advice.clip_frames} frames in all: too little to learn from")
+    if advice.cut.empty:
+        mend = f"add film, or say by a {SPLIT_FILE} which recording is for what"
+        said.append(f"no clip for {' and '.join(advice.cut.empty)}, as names are drawn: {mend}")
+    if advice.cut.clips < FEWEST_CLIPS:
+        said.append(f"only about {advice.cut.clips} clips of {advice.cut.frames} frames: too little to learn from")
     return said

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from physpipe.probing.scene import Mask, Picture, Scene
 
@@ -14,7 +15,7 @@ ALIKE = 1.6
 """Factor in diameter within which spots are of one size."""
 NEARLY = 0.8
 """A larger size is preferred that shows in this share of the frames that the commonest shows in."""
-EDGE = 0.5
+EDGE = 0.4
 """Where something ends: at this part of how much it differs from the background."""
 AGREED = 0.6
 """Share of the frames that must agree on how many objects there are."""
@@ -86,8 +87,9 @@ def _spots(mask: Mask, apart: Picture) -> list[Spot]:
 
 
 def _largest_disc(shape: Mask) -> tuple[float, float, float]:
-    """x, y and diameter in pixels of the largest disc in `shape`."""
-    depth = cv2.distanceTransform(np.pad(shape, 1).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    """x, y and diameter in pixels of the largest disc in `shape`, its holes filled."""
+    whole = ndimage.binary_fill_holes(np.pad(shape, 1))
+    depth = cv2.distanceTransform(whole.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     y, x = (float(each.mean()) for each in np.nonzero(depth >= depth.max() - 0.5))
     return x - 1, y - 1, 2 * float(depth.max()) - 1
 

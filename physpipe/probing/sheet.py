@@ -52,7 +52,7 @@ def _row(panels: Sequence[Axes], finding: Finding, geometry: Geometry) -> None:
         if finding.movers is not None:
             covered, _ = finding.scene.covered(finding.scene.first[at])
             if covered.any():
-                axes.contour(covered, [0.5], colors=MOVES, linewidths=0.6)
+                axes.contour(covered, [0.5], colors=MOVES, linewidths=0.8)
             _circle(axes, finding.movers.objects[at])
     _show(panels[-1], finding, finding.scene.background, geometry)
     panels[-1].set_title("every place, early blue to late yellow", fontsize=8)
