@@ -79,7 +79,7 @@ def test_film_tables_and_params_come_into_the_project(
     assert everything["run"] == {"datasets": ["bowls"]}
     out = capsys.readouterr().out
     assert "dvc add data/raw/rink" in out
-    assert "dvc exp run -S 'run.datasets=[rink]' -S 'run.simulated=[]'" in out
+    assert 'dvc exp run -S "run.datasets=[rink]" -S "run.simulated=[]"' in out
 
 
 def test_without_options_the_films_own_rate_and_square_are_used(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ from dvc.utils.hydra import apply_overrides
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
 from physpipe.core.params import read, read_value
+from physpipe.exporting.scale import ScaleParams
 from physpipe.flow_learning.film import as_batch, draw_pairs
 from physpipe.flow_learning.flow import FlowParams
 from physpipe.flownet.network import CorrFlow
@@ -33,8 +34,7 @@ RECIPES = list(PARAMS["tracker"]["recipes"])
 @pytest.mark.parametrize("name", list(PARAMS["datasets"]))
 def test_every_data_set_has_all_its_sections(name):
     kinds = {"ingest": IngestParams, "motion": ObjectsParams, "evaluate": BallParams, "predict": PredictParams}
-    if "simulate" in PARAMS["datasets"][name]:
-        kinds["simulate"] = SimulateParams
+    kinds |= {"simulate": SimulateParams} if "simulate" in PARAMS["datasets"][name] else {"scale": ScaleParams}
     assert set(PARAMS["datasets"][name]) == set(kinds)
     for section, kind in kinds.items():
         read(f"datasets.{name}.{section}", kind, PATH)

@@ -1,7 +1,10 @@
 """Small films whose truth is known, shared by tests; never square."""
 
+from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 
+import av
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -77,3 +80,18 @@ def _texture(rng: np.random.Generator, shape: tuple[int, ...], blur_px: float, s
     """Blurred noise of standard deviation `spread`."""
     noise = ndimage.gaussian_filter(rng.normal(size=shape), (blur_px / 2, blur_px / 2, 0), mode="wrap")
     return spread * noise / noise.std()
+
+
+def encoded(path: Path, frames: Sequence[NDArray[np.uint8]], times_s: Sequence[float]) -> Path:
+    """A lossless video of `frames` at `times_s` (to the millisecond in .mkv)."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with av.open(path, "w") as container:
+        stream = container.add_stream("ffv1", rate=100)
+        stream.height, stream.width, stream.pix_fmt = *frames[0].shape[:2], "bgr0"
+        stream.codec_context.time_base = Fraction(1, 1000)
+        for pixels, time_s in zip(frames, times_s, strict=True):
+            frame = av.VideoFrame.from_ndarray(pixels, format="rgb24").reformat(format="bgr0")
+            frame.pts, frame.time_base = round(1000 * time_s), Fraction(1, 1000)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+    return path

@@ -1,14 +1,15 @@
 """Frames with truth, track and forecast drawn onto them."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import cv2
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from physpipe.io import tracks
 from physpipe.report import colours
-from physpipe.report.run import Evidence
 
 SUBPIXEL_BITS = 4
 DASH_PX, RING_PX, DOT_PX = 7.0, 13.0, 5.0
@@ -37,7 +38,23 @@ class Marks:
         return np.flatnonzero(np.isfinite(self.forecast[..., 0]).any(axis=1)).tolist()
 
 
-def marks_of(evidence: Evidence, clip: str) -> Marks:
+class Tables(Protocol):
+    """Where marks come from; `Evidence` is one."""
+
+    @property
+    def truth(self) -> pd.DataFrame:
+        """Track table; no rows where nobody annotated the film."""
+
+    @property
+    def track(self) -> pd.DataFrame:
+        """Track table."""
+
+    @property
+    def forecast(self) -> pd.DataFrame:
+        """Forecast table."""
+
+
+def marks_of(evidence: Tables, clip: str) -> Marks:
     """The marks of one clip."""
     track = tracks.positions(evidence.track, clip)
     T = len(track)

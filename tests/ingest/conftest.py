@@ -1,15 +1,14 @@
 """Film made for the tests of ingest: a ball that rolls over a textured ground, encoded losslessly."""
 
-from collections.abc import Callable, Sequence
-from fractions import Fraction
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import av
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from worlds import encoded
 
 H, W = 64, 96
 
@@ -46,21 +45,6 @@ def rolling(
         light = 1 + drift * np.sin(2 * np.pi * t / count)
         frames.append(np.clip(frame * light + rng.normal(0, noise, frame.shape), 0, 255).round().astype(np.uint8))
     return np.stack(frames)
-
-
-def encoded(path: Path, frames: Sequence[NDArray[np.uint8]], times_s: Sequence[float]) -> Path:
-    """A lossless video of `frames` at `times_s` (to the millisecond in .mkv)."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with av.open(path, "w") as container:
-        stream = container.add_stream("ffv1", rate=100)
-        stream.height, stream.width, stream.pix_fmt = *frames[0].shape[:2], "bgr0"
-        stream.codec_context.time_base = Fraction(1, 1000)
-        for pixels, time_s in zip(frames, times_s, strict=True):
-            frame = av.VideoFrame.from_ndarray(pixels, format="rgb24").reformat(format="bgr0")
-            frame.pts, frame.time_base = round(1000 * time_s), Fraction(1, 1000)
-            container.mux(stream.encode(frame))
-        container.mux(stream.encode())
-    return path
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""L6: tracks and films for people and for other programs."""
