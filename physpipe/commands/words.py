@@ -47,7 +47,9 @@ def _doctor(words: Parser) -> None:
 
 def _annotate(words: Parser) -> None:
     words.add_argument("name", metavar="NAME", help="of the data set")
-    words.add_argument("--port", type=int, default=PORT, help="of the page, on this machine alone (default: %(default)s)")
+    words.add_argument(
+        "--port", type=int, default=PORT, help="of the page, on this machine alone (default: %(default)s)"
+    )
     words.add_argument("--no-browser", dest="browser", action="store_false", help="print the address, open nothing")
 
 
