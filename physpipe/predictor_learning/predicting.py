@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 import pandas as pd
+import torch
 from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
@@ -81,6 +82,8 @@ def learn_predictor(
         checkpoint,
         name,
     )
+    with torch.no_grad():
+        predictor.calibrate(valid.batch(checked))
     return predictor, curve
 
 

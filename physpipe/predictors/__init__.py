@@ -7,6 +7,7 @@ from physpipe.predictors.interpnet import InterpNet
 from physpipe.predictors.polynomial import Linear, Persistence, Quadratic
 from physpipe.predictors.posnet import PosNet
 from physpipe.predictors.probnet import ProbNet
+from physpipe.predictors.terrain import Terrain
 from physpipe.predictors.vin import Vin
 
 PREDICTORS: dict[str, type[Predictor]] = {
@@ -19,4 +20,5 @@ PREDICTORS: dict[str, type[Predictor]] = {
     "interpnet": InterpNet,
     "vin": Vin,
     "ifs": Ifs,
+    "terrain": Terrain,
 }

@@ -69,6 +69,9 @@ class Predictor(nn.Module, ABC):
         distance = distance_px(self(batch.seen, batch.asked_times).mean, batch.target)
         return distance.mean(), {"train_last_px": distance[:, -1].mean().item()}
 
+    def calibrate(self, held_out: Window) -> None:
+        """Once all else is learned: fits how sure it is to stretches of film that nothing was learned from."""
+
     def validation_loss(self, batch: Window) -> Tensor:
         """What validation minimises: the mean distance from the target at the last time asked for, in pixels."""
         last = self(batch.seen, batch.asked_times[:, -1:]).mean

@@ -14,6 +14,7 @@ from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.polynomial import NoParams
 from physpipe.predictors.probnet import ProbNetParams
 from physpipe.predictors.tensor_state import TensorStateParams
+from physpipe.predictors.terrain import TerrainParams
 from physpipe.predictors.vin import VinParams
 
 HEIGHT, WIDTH, OBJECTS = 32, 48, 3
@@ -28,6 +29,9 @@ SMALL = {
     "interpnet": InterpNetParams(**STATE, first_state=1.0),
     "vin": VinParams(channels=4, code=8, hidden=8, seen_weight=0, velocity_weight=0),
     "ifs": IfsParams(hidden=8, velocity=True),
+    "terrain": TerrainParams(
+        channels=16, hidden=8, code=2, first_horizon=4, growth_steps=0, spread_rounds=8, symmetric=True
+    ),
 }
 
 

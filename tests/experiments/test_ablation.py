@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 from dvc.utils.hydra import apply_overrides
-from physpipe.tracker_learning.tracking import TrackerParams
 
 from experiments.ablation import choice, collect, draw, experiments, variants
 from experiments.records import Result
 from physpipe.core.params import read
+from physpipe.tracker_learning.recipe import TrackerParams
 
 PARAMS = Path(__file__).parents[2] / "params.yaml"
 SEEDS = [0, 1]

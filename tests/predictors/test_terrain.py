@@ -1,0 +1,109 @@
+"""Facts about the forecaster that reads its law of motion from a map."""
+
+import pytest
+import torch
+
+from physpipe.core.determinism import torch_generator
+from physpipe.predictors.base import Seen, Window
+from physpipe.predictors.terrain import Terrain, TerrainParams
+
+HEIGHT, WIDTH = 40, 48
+SMALL = TerrainParams(channels=16, hidden=32, code=2, first_horizon=4, growth_steps=0, spread_rounds=40, symmetric=True)
+
+
+def springs(clips: int, frames: int, objects: int = 1) -> Window:
+    """Balls on springs to the frame's centre; the same grey gradient for film."""
+    generator = torch_generator(0)
+    amplitude = 8 * torch.randn(clips, 1, objects, 2, generator=generator)
+    phase = 6 * torch.rand(clips, 1, objects, 2, generator=generator)
+    times = torch.arange(frames, dtype=torch.float32).expand(clips, -1)
+    xy = torch.tensor([WIDTH, HEIGHT]) / 2 + amplitude * torch.cos(0.2 * times[..., None, None] + phase)
+    film = torch.linspace(0, 1, WIDTH).expand(clips, 4, 3, HEIGHT, WIDTH)
+    return Window(Seen(film, xy[:, :4], times[:, :4]), times[:, 4:], xy[:, 4:])
+
+
+def terrain(objects: int = 1, drawn: float = 0.0, **changed: object) -> Terrain:
+    torch.manual_seed(0)
+    made = Terrain(SMALL.model_copy(update=changed), objects)
+    with torch.no_grad():
+        for weights in made.parameters():
+            weights.add_(drawn * torch.randn(weights.shape))
+    return made
+
+
+def test_an_untrained_net_goes_straight_on():
+    window = springs(clips=3, frames=8)
+    steady = torch.tensor([2.0, -1.0]) * torch.arange(8.0)[:, None, None] + torch.tensor([20.0, 30.0])
+    steady = steady.expand(3, -1, -1, -1)
+    seen = Seen(window.seen.frames, steady[:, :4], window.seen.times)
+    torch.testing.assert_close(terrain()(seen, window.asked_times).mean, steady[:, 4:], rtol=0, atol=1e-3)  # px
+
+
+def test_one_batch_is_learned_tenfold():
+    window = springs(clips=4, frames=16)
+    net = terrain()
+    optimiser = torch.optim.Adam(net.parameters(), lr=3e-3)
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 300)
+    losses = []
+    for _ in range(300):
+        optimiser.zero_grad()
+        loss, _parts = net.loss(window, torch_generator(0))
+        loss.backward()
+        optimiser.step()
+        schedule.step()
+        losses.append(loss.item())
+    assert losses[-1] < losses[0] / 10
+
+
+def test_permuted_objects_have_the_permuted_forecast():
+    window, net = springs(clips=2, frames=12, objects=3), terrain(objects=3, drawn=0.05).eval()
+    order = [2, 0, 1]
+    there = net(Seen(window.seen.frames, window.seen.xy[:, :, order], window.seen.times), window.asked_times)
+    here = net(window.seen, window.asked_times)
+    torch.testing.assert_close(there.mean, here.mean[:, :, order], rtol=0, atol=1e-3)  # px
+
+
+def test_an_object_is_pushed_by_another_only_where_there_is_one():
+    window = springs(clips=2, frames=12, objects=2)
+    net = terrain(objects=2, drawn=0.05).eval()
+    moved = window.seen.xy.clone()
+    moved[:, :, 1] += 3
+    apart = (
+        net(Seen(window.seen.frames, moved, window.seen.times), window.asked_times).mean
+        - net(window.seen, window.asked_times).mean
+    )
+    assert apart[:, :, 0].abs().max() > 1e-2  # px
+    assert terrain(objects=1).law.pair is None
+
+
+def test_the_horizon_grows_from_its_first_frames_to_all():
+    window = springs(clips=2, frames=24)
+    net = terrain(first_horizon=4, growth_steps=10).train()
+    straight = net(window.seen, window.asked_times).mean - window.target
+    by_frame = straight.square().sum(-1).sqrt().mean((0, 2))
+    first = net.loss(window, torch_generator(0))[0].item()
+    assert first == pytest.approx(by_frame[:4].mean().item(), abs=1e-2)  # px
+    net.steps.fill_(10)
+    assert net.loss(window, torch_generator(0))[0].item() == pytest.approx(by_frame.mean().item(), abs=1e-2)
+
+
+def test_a_shaken_camera_changes_no_forecast_of_the_scene_before_it():
+    """Film of a texture and a ball that stands still, both shaken alike: the ball is forecast to stay."""
+    generator = torch_generator(3)
+    coarse = torch.rand(1, 3, 12, 14, generator=generator)
+    texture = torch.nn.functional.interpolate(coarse, (HEIGHT + 2, WIDTH + 2), mode="bicubic", align_corners=True)
+    shifts = torch.tensor([[0.6, -0.3], [0.4, -0.2], [0.2, -0.1], [0.0, 0.0]])
+    film = torch.stack([shifted(texture[0], *shift.tolist()) for shift in shifts])[None]
+    xy = (torch.tensor([24.0, 20.0]) + shifts)[None, :, None]
+    times = torch.arange(12.0)[None]
+    path = terrain()(Seen(film, xy, times[:, :4]), times[:, 4:]).mean
+    assert (path - torch.tensor([24.0, 20.0])).abs().max() < 0.4  # px; the plain slope ends 1.6 px away
+    assert (path - torch.tensor([24.0, 20.0]))[:, 0].abs().max() < 0.1
+
+
+def shifted(picture: torch.Tensor, x: float, y: float) -> torch.Tensor:
+    """(3, H, W) of (3, H + 2, W + 2), its content moved by less than a pixel along x and y."""
+    rows = torch.linspace(-1, 1, picture.shape[1])[1:-1] - y * 2 / (picture.shape[1] - 1)
+    columns = torch.linspace(-1, 1, picture.shape[2])[1:-1] - x * 2 / (picture.shape[2] - 1)
+    grid = torch.stack([columns.expand(len(rows), -1), rows[:, None].expand(-1, len(columns))], dim=-1)[None]
+    return torch.nn.functional.grid_sample(picture[None], grid, mode="bicubic", align_corners=True)[0]

@@ -1,0 +1,76 @@
+"""Facts about carrying uncertainty along a path."""
+
+import pytest
+import torch
+
+from physpipe.core.determinism import torch_generator
+from physpipe.predictors.terrain_law import Motion
+from physpipe.predictors.uncertainty import Path, Spread, linearised, squared_distance
+
+
+def straight(now: Motion) -> Motion:
+    return Motion(now.place + now.velocity, now.velocity)
+
+
+def spread(objects: int, *stds: float) -> Spread:
+    made = Spread(objects)
+    made.logs.copy_(torch.tensor(stds).log())
+    return made
+
+
+def start(clips: int, objects: int) -> Motion:
+    generator = torch_generator(0)
+    return Motion(
+        torch.randn(clips, 1, objects, 2, generator=generator),
+        0.1 * torch.randn(clips, 1, objects, 2, generator=generator),
+    )
+
+
+def test_free_flight_spreads_as_a_kalman_filter_says():
+    path = linearised(straight, start(2, 1), steps=6)
+    cov = spread(1, 0.3, 0.02, 0.01, 0.05)(path.jacobians)
+    t = torch.arange(1.0, 7.0)
+    noise = torch.tensor([0.01**2 * sum((n - s) ** 2 for s in range(1, n + 1)) for n in range(1, 7)])
+    expected = 0.3**2 + (0.02 * t) ** 2 + noise + 0.05**2
+    torch.testing.assert_close(cov[0, :, 0, 0, 0], expected, rtol=1e-3, atol=0)
+    torch.testing.assert_close(cov[0, :, 0, 0, 1], torch.zeros(6), rtol=0, atol=1e-6)
+
+
+def test_a_path_that_gathers_makes_a_forecast_surer():
+    drag = lambda now: Motion(0.8 * now.place, now.velocity)  # noqa: E731
+    cov = spread(1, 0.3, 1e-6, 1e-6, 1e-6)(linearised(drag, start(1, 1), steps=5).jacobians)
+    torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), 0.3 * 0.8 ** torch.arange(1.0, 6.0), rtol=1e-3, atol=0)
+
+
+def test_linearised_paths_are_the_laws_own():
+    path = linearised(straight, start(2, 3), steps=4)
+    now = start(2, 3)
+    expected = torch.stack([(now.place + n * now.velocity)[:, 0] for n in range(1, 5)], dim=1)
+    torch.testing.assert_close(path.place, expected)
+
+
+def test_known_noise_is_found_again_to_a_tenth_and_nine_tenths_are_covered():
+    generator = torch_generator(1)
+    clips, steps = 400, 8
+    begin = start(clips, 1)
+    path = linearised(straight, begin, steps)
+    off = 0.03 * torch.randn(clips, 1, 1, 2, generator=generator)
+    t = torch.arange(1.0, steps + 1)[:, None, None]
+    target = path.place + off * t + 0.05 * torch.randn(clips, steps, 1, 2, generator=generator)
+    made = spread(1, 0.01, 0.01, 0.001, 0.01)
+    made.fit(path, target, rounds=200)
+    cov = made(path.jacobians)
+    true = 0.05**2 + (0.03 * torch.arange(1.0, steps + 1)) ** 2
+    torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), true.sqrt(), rtol=0.1, atol=0)
+    inside = (squared_distance(target - path.place, cov) < 4.605).float().mean()
+    assert inside.item() == pytest.approx(0.9, abs=0.005)
+
+
+def test_lost_tracks_do_not_rule_the_fit():
+    path = Path(torch.zeros(100, 4, 1, 2), torch.eye(4).expand(100, 4, 4, 4))
+    target = 0.02 * torch.randn(100, 4, 1, 2, generator=torch_generator(2))
+    target[:3] += 1.0
+    made = spread(1, 0.01, 0.001, 0.001, 0.01)
+    made.fit(path, target, rounds=200)
+    std = made(path.jacobians)[0, -1, 0, 0, 0].sqrt().item()
+    assert std == pytest.approx(0.02, rel=0.15)
