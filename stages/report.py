@@ -5,6 +5,7 @@ from pathlib import Path
 from physpipe.core import params
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams
+from physpipe.report import ablation
 from physpipe.report.page import ReportParams, write_page
 from physpipe.report.run import RunParams, Sources, gather
 from physpipe.report.tables import save_metrics
@@ -18,6 +19,7 @@ def main(
     forecasts: Path,
     trackers: Path,
     predictors: Path,
+    ablated: Path,
     metrics: Path,
     page: Path,
 ) -> None:
@@ -26,9 +28,10 @@ def main(
     shown = params.read("report", ReportParams)
     compute = params.read("compute", ComputeParams)
     sources = Sources(clips, truth, tracks, scores, forecasts, trackers, predictors)
+    measured = ablation.load(ablated)
     every = [gather(name, ran, sources, shown.predictor) for name in ran.datasets]
     save_metrics(metrics, every, shown.predictor)
-    write_page(page, every, compute.seed, shown)
+    write_page(page, every, measured, compute.seed, shown)
 
 
 if __name__ == "__main__":

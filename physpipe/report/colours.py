@@ -57,3 +57,8 @@ def of_object(number: int) -> str:
 def rgb(colour: str) -> tuple[int, int, int]:
     """Hex colour to red, green, blue in 0 .. 255."""
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def for_page(colour: str) -> str:
+    """The colour as the page's style sheet knows it: references are drawn like text, light on a dark page."""
+    return "var(--ink)" if colour == REFERENCE else colour

@@ -38,6 +38,10 @@ HORIZONS = {"error_T_px": "T", "error_2T_px": "2T"}
 SUPERVISION_WORDS = {"tracks": "unsupervised tracks", "truth": "true positions"}
 
 
+Line = tuple[str, Any, Any, Any, str]
+"""What, ours, the paper's, standing still's, and the model."""
+
+
 def known_columns(rows: dict[str, Row], columns: dict[str, str]) -> dict[str, str]:
     """Those of `columns` that some row has a figure for."""
     return {key: heading for key, heading in columns.items() if any(row.get(key) is not None for row in rows.values())}
@@ -52,34 +56,33 @@ class Headline(NamedTuple):
     ours: Any
     paper: Any
     persistence: Any
+    model: str
+    """`tracker:<name>` or `predictor:<name>`, or nothing."""
 
 
 def headlines(every: Sequence[Evidence], predictor: str) -> list[Headline]:
     """The first table of the page; `predictor` names the one whose errors it holds."""
-    return [
-        Headline(each.name, each.simulated, what, *values)
-        for each in every
-        for what, *values in _lines(each, predictor)
-    ]
+    return [Headline(each.name, each.simulated, *values) for each in every for values in _lines(each, predictor)]
 
 
-def _lines(evidence: Evidence, predictor: str) -> Iterator[tuple[str, Any, Any, Any]]:
+def _lines(evidence: Evidence, predictor: str) -> Iterator[Line]:
     if evidence.annotated:
         yield from _of_tracker(tracker_rows(evidence))
         yield from _of_predictor(predictor_rows(evidence), predictor)
     else:
-        yield "no truth, so no error can be stated", None, None, None
+        yield "no truth, so no error can be stated", None, None, None, ""
 
 
-def _of_tracker(rows: dict[str, Row]) -> Iterator[tuple[str, Any, Any, Any]]:
+def _of_tracker(rows: dict[str, Row]) -> Iterator[Line]:
     ours = rows.get("unsupervised", {})
-    yield "unsupervised tracker, mean error in px", ours.get("mean_px"), ours.get("paper_mean_px"), None
-    yield "unsupervised tracker, 99 % of frames within px", ours.get("p99_px"), None, None
+    model = "tracker:unsupervised"
+    yield "unsupervised tracker, mean error in px", ours.get("mean_px"), ours.get("paper_mean_px"), None, model
+    yield "unsupervised tracker, 99 % of frames within px", ours.get("p99_px"), None, None, model
 
 
-def _of_predictor(blocks: dict[str, dict[str, Row]], predictor: str) -> Iterator[tuple[str, Any, Any, Any]]:
+def _of_predictor(blocks: dict[str, dict[str, Row]], predictor: str) -> Iterator[Line]:
     for supervision, rows in blocks.items():
         ours, still = rows.get(predictor, {}), rows.get("persistence", {})
         for key, horizon in HORIZONS.items() if ours else ():
             what = f"{predictor} from {SUPERVISION_WORDS[supervision]}, error at {horizon} in px"
-            yield what, ours.get(key), ours.get(f"paper_{key}"), still.get(key)
+            yield what, ours.get(key), ours.get(f"paper_{key}"), still.get(key), f"predictor:{predictor}"

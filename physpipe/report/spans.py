@@ -15,6 +15,8 @@ def doubtful_spans(track: pd.DataFrame, truth: pd.DataFrame, frames: int, count:
     Columns COLUMNS: `lost` counts frames without a position; `error_px` is the mean distance to the nearest
     true object, NaN without truth.
     """
+    if track.empty:
+        return pd.DataFrame(columns=COLUMNS)
     length = int(min(frames, track.groupby(["clip", "object"]).size().min()))
     spans = _windows(track.assign(error_px=_errors(track, truth)), length)
     chosen: list[pd.Series] = []

@@ -26,15 +26,22 @@ def refusal(monkeypatch: pytest.MonkeyPatch, *words: object) -> str:
 
 def test_the_command_serves_until_it_is_interrupted(project):
     words = [sys.executable, "-u", "-m", "physpipe.cli", "annotate", "rink", "--port", "0", "--no-browser"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=None) as command:
-        assert command.stdout is not None
-        line = command.stdout.readline()
-        url = line.split()[-1]
-        assert line.startswith("Annotate rink: http://127.0.0.1:")
-        assert "physpipe" in urlopen(url, timeout=5).read().decode()
-        command.send_signal(signal.SIGINT)
-        assert "Next: dvc repro" in command.communicate(timeout=10)[0]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, preexec_fn=_heed_interrupts) as command:
+        try:
+            assert command.stdout is not None
+            line = command.stdout.readline()
+            assert line.startswith("Annotate rink: http://127.0.0.1:")
+            assert "physpipe" in urlopen(line.split()[-1], timeout=5).read().decode()
+            command.send_signal(signal.SIGINT)
+            assert "Next: dvc repro" in command.communicate(timeout=10)[0]
+        finally:
+            command.kill()
     assert command.returncode == 0
+
+
+def _heed_interrupts() -> None:
+    """What a shell starts in the background, as CI may start the tests, ignores Ctrl+C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def test_help_shows_an_example(monkeypatch, capsys):

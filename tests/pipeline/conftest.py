@@ -16,6 +16,7 @@ PARTS = [
     "stages",
     "experiments",
     "metrics/templates",
+    "metrics/ablation.json",
     "dvc.yaml",
     "params.yaml",
     ".dvc/config",

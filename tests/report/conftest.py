@@ -11,9 +11,28 @@ import pytest
 from physpipe.core.geometry import Geometry
 from physpipe.io import clips, forecasts, results, tracks
 from physpipe.predictors.horizon import BASELINES
-from physpipe.report.film import FilmParams
-from physpipe.report.page import ReportParams
+from physpipe.report.page import ReportParams, write_page
+from physpipe.report.playing import FilmParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather
+
+ABLATION = {
+    "dataset": "bowlr_sim",
+    "losses": {
+        "disc": None,
+        "disc+ent": {
+            "mean_px": 1.5,
+            "p99_px": 4.0,
+            "off_track": 0.0,
+            "locked": True,
+            "worst": {"mean_px": 2.5, "p99_px": 4.0},
+            "seeds": [0, 1],
+        },
+        "const": {"mean_px": 24.0, "p99_px": 40.0, "off_track": 1.0, "locked": None, "worst": {}, "seeds": [0]},
+    },
+    "ingredients": {"full recipe": None},
+    "choice": {"losses": {"runs": 2, "spearman": None}, "ingredients": {"runs": 0, "spearman": None}},
+}
+"""As `make ablation` writes it."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +63,7 @@ class Project:
     sources: Sources
     run: RunParams
     shown: ReportParams
+    ablation: dict
 
     def evidence(self, name: str) -> Evidence:
         return gather(name, self.run, self.sources, self.shown.predictor)
@@ -186,7 +206,7 @@ def build(root: Path, world: World) -> Project:
     run = RunParams(
         datasets=["bowls", "film"], simulated=["bowls"], learned=list(world.learned), supervised=["bowls"], flow=[]
     )
-    film = FilmParams(clips=2, fps_at_most=30, kilobytes=900)
+    film = FilmParams(clips=2, frames_at_most=100, fps_at_most=30, quality=90)
     shown = ReportParams(
         predictor="dispnet",
         clips_shown=2,
@@ -197,7 +217,7 @@ def build(root: Path, world: World) -> Project:
         span_frames=4,
         film=film,
     )
-    return Project(world, root, sources, run, shown)
+    return Project(world, root, sources, run, shown, ABLATION)
 
 
 @pytest.fixture(scope="session")
@@ -213,3 +233,11 @@ def bowls(project: Project) -> Evidence:
 @pytest.fixture(scope="session")
 def film(project: Project) -> Evidence:
     return project.evidence("film")
+
+
+@pytest.fixture(scope="session")
+def folder(project: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of the made-up project."""
+    out = tmp_path_factory.mktemp("out") / "report"
+    write_page(out, project.every(), project.ablation, 7, project.shown)
+    return out

@@ -1,18 +1,21 @@
 """The page stands alone, and its tables hold the metrics' numbers."""
 
 import base64
+import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import cv2
 import numpy as np
 import pytest
 
+from physpipe.io import tracks
 from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS
 from physpipe.report.page import write_page
 from physpipe.report.paper import predictor_rows, tracker_rows
 
-VOID = {"meta", "link", "img", "br"}
+VOID = {"meta", "link", "img", "br", "input"}
 
 
 class Page(HTMLParser):
@@ -52,13 +55,6 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def folder(project, tmp_path_factory):
-    out = tmp_path_factory.mktemp("out") / "report"
-    write_page(out, project.every(), 7, project.shown)
-    return out
-
-
-@pytest.fixture(scope="module")
 def html(folder) -> str:
     return (folder / "index.html").read_text(encoding="utf-8")
 
@@ -71,23 +67,32 @@ def page(html) -> Page:
 def test_page_fetches_nothing(html, page):
     assert all(source.startswith(("data:", "#")) for source in page.sources)
     markup = re.sub(r"data:[a-z0-9/]+;base64,[A-Za-z0-9+/=]+", "", html)
-    assert not re.search(r"https?://|url\(|@import|<script", markup)
+    assert not re.search(r"https?://|url\(|@import|\bimport\b|fetch\(|<script[^>]+src", markup)
+    assert "default-src 'none'" in html  # nor could it
 
 
-def test_every_picture_decodes_and_the_films_are_inside(page, folder):
+def test_every_picture_decodes(page):
     kinds = []
     for source in page.sources:
         if source.startswith("data:") and source != "data:,":
             kind, content = source.split(";base64,")
             kinds.append(kind)
             raw = base64.b64decode(content, validate=True)
-            if kind.startswith("data:image/"):
-                assert cv2.imdecode(np.frombuffer(raw, np.uint8), cv2.IMREAD_COLOR) is not None
-            else:
-                assert raw in [(folder / f"{name}.mp4").read_bytes() for name in ("bowls", "film")]
-    assert kinds.count("data:video/mp4") == 2
-    assert kinds.count("data:image/jpeg") == 2 * 2 * 3  # data sets, clips, frames
-    assert kinds.count("data:image/png") >= 2 * 3  # heat maps and figures
+            assert cv2.imdecode(np.frombuffer(raw, np.uint8), cv2.IMREAD_COLOR) is not None
+    assert kinds.count("data:image/webp") == 2 * 2 * 3  # data sets, clips, frames
+    assert kinds.count("data:image/png") == 2  # a heat map a data set
+
+
+def test_the_films_are_inside_with_every_clip_that_a_link_names(html, page, project):
+    data = json.loads(re.search(r'<script type="application/json" id="report-data">(.*?)</script>', html)[1])
+    assert set(data["films"]) == {"bowls", "film"}
+    scenes = {scene["clip"]: scene for film in data["films"].values() for scene in film["scenes"]}
+    assert len(scenes["bowls_003"]["times_s"]) == project.world.frames
+    links = [source.removeprefix("#at=").split("/") for source in page.sources if source.startswith("#at=")]
+    assert len(links) == 2 * (2 * 3 + 3)  # data sets, stills and doubtful spans
+    for name, clip, frame in links:
+        assert clip in {scene["clip"] for scene in data["films"][name]["scenes"]}
+        assert 0 <= int(frame) < scenes[clip]["total"]
 
 
 def test_tables_hold_the_numbers_of_the_metrics(page, bowls):
@@ -128,5 +133,21 @@ def test_other_runs_are_not_shown(page):
 
 
 def test_same_inputs_give_the_same_bytes(project, folder, tmp_path):
-    write_page(tmp_path / "report", project.every(), 7, project.shown)
+    write_page(tmp_path / "report", project.every(), project.ablation, 7, project.shown)
     assert (tmp_path / "report" / "index.html").read_bytes() == (folder / "index.html").read_bytes()
+
+
+def test_ablation_shows_what_was_measured_and_what_has_not_run(page, html):
+    rows = page.numbers["ablation"].values()
+    assert ["1.5", "4.0", "0.0", "True"] in rows
+    assert ["", "", "", ""] in rows  # a seed of `disc` has not run
+    assert "worst 2.50" in page.text["ablation"]
+    assert "bowlr_sim" in page.text["ablation"]
+    assert "Our recipe less one" not in page.text["ablation"]  # none of its rows has run
+    assert "rank correlation" not in page.text["ablation"]
+
+
+def test_a_set_without_any_track_says_so(project, film, tmp_path):
+    lost = replace(film, track=tracks.empty())
+    write_page(tmp_path / "report", [lost], {}, 7, project.shown)
+    assert "No track, so nothing to show" in (tmp_path / "report" / "index.html").read_text()
