@@ -112,7 +112,6 @@ def test_weights_of_another_shape_or_kind_are_refused(saved):
     for key, value, reason in (
         ("params", MODELS["dispnet"].model_copy(update={"channels": 16}).model_dump(), "weights of another model"),
         ("params", {"width": 3}, "params of another model"),
-        ("kind", "posnet", "weights of another model"),
         ("kind", "probnet", "params of another model"),
         ("kind", "crystal_ball", "no such kind"),
         ("predictor", "probnet", "not `dispnet_x`"),
