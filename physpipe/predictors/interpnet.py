@@ -1,8 +1,8 @@
 """InterpNet: DispNet that also sees the last frame, and fills in what happens between.
 
 Ehrhardt et al. 2018, section 4.4, and arXiv 1706.02179. Theirs: the first state is also made to tell the seen positions
-and the one at the end. Ours: how it does (as PosNet's states do), and that the end it tells of is shown to every step:
-where it lies from the object, at what speed it would be reached, and how soon.
+and the one at the end. Ours: it asks its first layer, which is fine enough, where there is what it looks for; and the
+end so found is shown to every step: where it lies from the object, at what speed it would be reached, and how soon.
 """
 
 from dataclasses import replace
@@ -34,17 +34,16 @@ class InterpNet(DispNet):
 
     def __init__(self, params: InterpNetParams, objects: int):
         super().__init__(params, objects)
-        C = params.channels
         self.first_state = params.first_state
-        self.ask = reader(2 * C + 2, params.hidden, outputs=(self.seen_frames + 1) * C)
-        self.locate = Locator(C)
+        self.ask = reader(2 * params.channels + 2, params.hidden, outputs=(self.seen_frames + 1) * params.stem)
+        self.locate = Locator(params.stem)
 
     def _scene(self, seen: Seen) -> Scene:
         scene = super()._scene(seen)
         last = scene.places[:, -1]
         here = read_at(scene.state, bilinear_weights(last, scene.grid, scene.unit.aspect))
         asked = self.ask(torch.cat([here, scene.whole, last], dim=2)).unflatten(2, (self.seen_frames + 1, -1))
-        found = self.locate(scene.state, asked.transpose(1, 2).flatten(1, 2), scene.unit.aspect)
+        found = self.locate(scene.detail, asked.transpose(1, 2).flatten(1, 2), scene.unit.aspect)
         return replace(scene, regressed=found.unflatten(1, (self.seen_frames + 1, -1)))
 
     def _look(self, scene: Scene, state: Tensor, weights: Tensor, known: Motion) -> Tensor:

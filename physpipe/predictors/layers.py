@@ -91,17 +91,22 @@ def everywhere(values: Tensor, grid: tuple[int, int]) -> Tensor:
 
 
 class Locator(nn.Module):
-    """Positions regressed from a state: where its cells point to, weighted by how well each matches a query."""
+    """Positions regressed from a state: where its cells point to, weighted by how well each matches a query.
+
+    Cells point to their own centres before they have learned anything.
+    """
 
     def __init__(self, channels: int):
         super().__init__()
         self.point = nn.Conv2d(channels, 2, 1)
+        for each in self.point.parameters():
+            nn.init.zeros_(each)
 
     def forward(self, state: Tensor, queries: Tensor, aspect: Tensor) -> Tensor:
         """(B, M, 2) in the unit of `FrameUnit`; `state` (B, C, h, w), `queries` (B, M, C)."""
-        B, C, h, w = state.shape
-        match = torch.einsum("bmc,bchw->bmhw", queries, state).float() / C**0.5
-        centres = offsets_from(torch.zeros(B, 1, 2, device=state.device), (h, w), aspect)
+        grid = (state.shape[2], state.shape[3])
+        match = torch.einsum("bmc,bchw->bmhw", queries, state).float()  # over sqrt(C) it would take long to sharpen
+        centres = offsets_from(torch.zeros(len(state), 1, 2, device=state.device), grid, aspect)
         pointed = centres + self.point(state).float()  # (B, 2, h, w)
         share = match.flatten(2).softmax(2).unsqueeze(2)  # no matrix product below: autocast would round positions
         return (share * pointed.flatten(2).unsqueeze(1)).sum(3)

@@ -1,6 +1,7 @@
 """What the seen frames and positions tell, as a tensor over the frame: the first state of the tensor nets.
 
-All sizes are ours, and so is that the seen positions enter beside the frames, as marks and coordinates on the grid.
+All sizes are ours, and so is that the seen positions enter beside the frames, as marks and coordinates on the grid, and
+that a frame seen at the end enters as what has changed in it.
 """
 
 from dataclasses import dataclass
@@ -35,6 +36,8 @@ class Scene:
 
     state: Tensor
     """(B, C, h, w)."""
+    detail: Tensor
+    """(B, C', 4 h, 4 w) of its first layer, which has seen frames alone."""
     whole: Tensor
     """(B, K, C) its mean."""
     places: Tensor
@@ -76,10 +79,12 @@ class SceneEncoder(nn.Module):
         """The scene; `seen` may hold more frames than positions."""
         unit = FrameUnit.of(seen.frames)
         places = unit.from_px(seen.xy)
-        stacked = (seen.frames - 0.5).flatten(1, 2).contiguous(memory_format=torch.channels_last)
-        state = self._state(self.stem(stacked), places, slope(places, seen.times[:, : places.shape[1]]), unit.aspect)
+        known, end = seen.frames[:, : places.shape[1]], seen.frames[:, places.shape[1] :]
+        stacked = torch.cat([known - 0.5, end - known[:, -1:]], dim=1).flatten(1, 2)
+        low = self.stem(stacked.contiguous(memory_format=torch.channels_last))
+        state = self._state(low, places, slope(places, seen.times[:, : places.shape[1]]), unit.aspect)
         whole = state.float().mean((2, 3)).unsqueeze(1).expand(-1, self.objects, -1)
-        return Scene(state, whole, places, seen.times, unit)
+        return Scene(state, low, whole, places, seen.times, unit)
 
     def _state(self, low: Tensor, places: Tensor, velocity: Tensor, aspect: Tensor) -> Tensor:
         """(B, C, h, w) from the frames' (B, stem, 4 h, 4 w)."""

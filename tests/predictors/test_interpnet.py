@@ -63,8 +63,8 @@ def leaving(clips: int, generator: torch.Generator) -> Window:
 def test_the_way_to_an_end_that_only_the_last_frame_tells_is_learned_and_not_by_heart():
     net = interpnet(symmetric=False)
     optimiser = torch.optim.Adam(net.parameters(), lr=1e-2)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 300)
-    for step in range(300):
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 200)
+    for step in range(200):
         optimiser.zero_grad()
         net.loss(leaving(16, torch_generator(0, step)), torch_generator(0))[0].backward()
         optimiser.step()
@@ -73,4 +73,4 @@ def test_the_way_to_an_end_that_only_the_last_frame_tells_is_learned_and_not_by_
     with torch.no_grad():
         missed = (net(fresh.seen, fresh.asked_times).mean - fresh.target).norm(dim=-1)
     still = (fresh.seen.xy[:, -1:] - fresh.target).norm(dim=-1)
-    assert (missed.mean(0) < still.mean(0) / 2).all()
+    assert (missed.mean(0) < still.mean(0) / 3).all()

@@ -67,8 +67,6 @@ def test_the_unit_is_half_of_the_longer_side_from_the_frames_centre():
 
 def test_a_locator_finds_the_cell_that_matches_its_query_and_what_that_cell_points_to():
     locate = Locator(channels=4)
-    torch.nn.init.zeros_(locate.point.weight)
-    torch.nn.init.zeros_(locate.point.bias)
     state = torch.zeros(1, 4, *GRID)
     state[0, 0, 3, 0], state[0, 1, 1, 6] = 9.0, 9.0
     queries = 30 * torch.eye(4)[None, :3]
