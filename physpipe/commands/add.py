@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from physpipe.commands import section
+from physpipe.commands.places import ANNOTATIONS, RAW
 from physpipe.core.errors import InputError
 from physpipe.core.params import PARAMS
 from physpipe.io import adding, folders, params_file
@@ -30,7 +31,7 @@ def run(words: Namespace) -> None:
     after = section.extended(before, name, {} if had else _changes(words))
     if words.run:
         after = params_file.with_item(after, "run.datasets", name)
-    raw, annotations = Path("data/raw") / name, Path("data/annotations") / name
+    raw, annotations = RAW / name, ANNOTATIONS / name
     found = adding.copy_film(words.folder, raw, annotations)
     with replacing(PARAMS) as temporary:
         temporary.write_text(after, encoding="utf-8", newline="\n")

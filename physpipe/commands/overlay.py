@@ -22,7 +22,8 @@ def run(words: Namespace) -> None:
     if not words.slower > 0:
         raise InputError("--slower", f"{words.slower:g} is no factor", "give a number above 0")
     path = words.table or TRACKS / f"{name}.parquet"
-    tables = Tables(_truth(name), tracks.load(path), _forecast(name, words.predictor, shown.predictor))
+    track = tracks.load(path)
+    tables = Tables(_truth(name), track, _forecast(name, words, shown.predictor, track))
     clips = ClipSet(CLIPS / name)
     names = [clip for clip in _names(clips, words) if (tables.track["clip"] == clip).any()]
     if not names:
@@ -48,7 +49,14 @@ def _truth(name: str) -> pd.DataFrame:
     return tracks.load(path) if path.is_file() else tracks.empty()
 
 
-def _forecast(name: str, asked: str | None, usual: str) -> pd.DataFrame:
-    """Forecasts from the tracks; none where nothing was asked for and nothing was forecast."""
-    path = FORECASTS / name / "tracks" / f"{asked or usual}.parquet"
-    return forecasts.load(path) if asked or path.is_file() else forecasts.empty()
+def _forecast(name: str, words: Namespace, usual: str, track: pd.DataFrame) -> pd.DataFrame:
+    """Forecasts from the tracks; none where none were asked for, and there are none or another table is drawn."""
+    path = FORECASTS / name / "tracks" / f"{words.predictor or usual}.parquet"
+    if not words.predictor and (words.table or not path.is_file()):
+        return forecasts.empty()
+    table = forecasts.load(path)
+    beyond = table.merge(track, on=forecasts.KEY, how="left")["visible"].isna() & table["clip"].isin(track["clip"])
+    if beyond.any():
+        reason = f"forecasts objects or frames of clip {table.loc[beyond, 'clip'].iloc[0]} that the tracks lack"
+        raise InputError(path, reason, "draw the tracks that it was made from, without --table")
+    return table

@@ -5,10 +5,10 @@ from pathlib import Path
 from physpipe.core.errors import InputError
 from physpipe.core.params import PARAMS, nearest, read_value
 
-RAW, CLIPS, TRACKS, TRUTH, FORECASTS = (
-    Path("data") / each for each in ("raw", "clips", "tracks", "truth", "forecasts")
+DATA, EXPORTS = Path("data"), Path("exports")
+RAW, ANNOTATIONS, CLIPS, TRACKS, TRUTH, FORECASTS = (
+    DATA / each for each in ("raw", "annotations", "clips", "tracks", "truth", "forecasts")
 )
-EXPORTS = Path("exports")
 
 
 def known_set(name: str) -> str:

@@ -9,7 +9,7 @@ from physpipe.commands import section
 from physpipe.core.params import PARAMS
 from physpipe.exporting.target import writable
 from physpipe.probing import sheet
-from physpipe.probing.advice import geometry
+from physpipe.probing.crop import geometry
 from physpipe.probing.folder import probe
 from physpipe.probing.text import described
 

@@ -2,19 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from physpipe.core.geometry import Geometry
-from physpipe.ingest import framing
 from physpipe.ingest.dataset import clip_name
 from physpipe.ingest.framing import CropParams
 from physpipe.ingest.recording import SHORTEST
 from physpipe.ingest.splits import SplitParams, drawn
 from physpipe.io.clips import SPLITS, Split
+from physpipe.probing.crop import clip_px, likely_crop
 from physpipe.probing.findings import Finding
 
 CLIP_FRAMES = (60, 48, 40, 32, 24, 20, 16, 14, 12, 11, 10, 9, 8)
@@ -27,10 +25,6 @@ UNEVEN = 0.02
 """Share of odd intervals beyond which a recording is resampled."""
 ENOUGH_PX = 1.0
 """Clip pixels a frame: of film that moves less than half as fast, fewer frames will do."""
-MARGIN = 1.0
-"""Diameters left free around all that was seen: a look misses the farthest moments."""
-WORTH_IT = 0.85
-"""A crop is worth its while when its side is shorter than this part of the largest centred square's."""
 GAP_FRAMES = 5
 """Lost frames in a row that still leave a clip whole."""
 FORECAST_FRAMES = 10
@@ -99,11 +93,11 @@ def advise(found: Sequence[Finding], size: int, shares: SplitParams | None, sour
     true_fps = source_fps or _tagged(found)
     rates = [true_fps or each.film.clock.measured_fps for each in found]
     crop = likely_crop(found)
-    speeds = [each.speed_px * _clip_px(each, crop, size) for each in found]
+    speeds = [each.speed_px * clip_px(each, crop, size) for each in found]
     fps = _rate(found, rates, speeds)
     slowest = fps or min(rates)
     lengths = {each.stem: _frames(each, rate, fps) for each, rate in zip(found, rates, strict=True)}
-    radii = [each.diameter_px / 2 * _clip_px(each, crop, size) for each in found if each.movers is not None]
+    radii = [each.diameter_px / 2 * clip_px(each, crop, size) for each in found if each.movers is not None]
     return Advice(
         fps=fps,
         source_fps=true_fps,
@@ -113,37 +107,6 @@ def advise(found: Sequence[Finding], size: int, shares: SplitParams | None, sour
         objects=_agreed(found),
         radius_px=round(median(radii), 1) if radii else None,
     )
-
-
-def geometry(finding: Finding, crop: CropParams | None, size: int) -> Geometry:
-    """Where clips of `size` pixels lie in the frame of a recording."""
-    return framing.geometry(Path(finding.source), (finding.film.height, finding.film.width), crop, size)
-
-
-def likely_crop(found: Sequence[Finding]) -> CropParams | None:
-    """The square around all that objects covered; None, the largest centred square, where it would gain little."""
-    boxes = [each.box for each in found if each.box is not None]
-    sizes = {(each.film.width, each.film.height) for each in found}
-    if not boxes or len(sizes) > 1:  # one box cannot fit frames of several sizes
-        return None
-    width, height = sizes.pop()
-    (left, top), (right, bottom) = np.min(boxes, axis=0)[:2].tolist(), np.max(boxes, axis=0)[2:].tolist()
-    margin = MARGIN * max(each.diameter_px for each in found if each.box is not None)
-    side = min(max(right - left, bottom - top) + 2 * round(margin), width, height)
-    corner = [_placed((left + right - side) // 2, width - side), _placed((top + bottom - side) // 2, height - side)]
-    centred = [(most - side) // 2 for most in (width, height)]
-    if side > WORTH_IT * min(width, height) and np.abs(np.subtract(corner, centred)).max() < (1 - WORTH_IT) * side:
-        return None
-    return CropParams(left=corner[0], top=corner[1], width=side, height=side)
-
-
-def _placed(start: int, last: int) -> int:
-    return min(max(start, 0), last)
-
-
-def _clip_px(finding: Finding, crop: CropParams | None, size: int) -> float:
-    """Clip pixels per pixel of the recording."""
-    return float(geometry(finding, crop, size).scale[0])
 
 
 def _tagged(found: Sequence[Finding]) -> float | None:

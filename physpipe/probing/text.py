@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from physpipe.probing.advice import geometry
+from physpipe.probing.crop import geometry
 from physpipe.probing.findings import Finding
 from physpipe.probing.folder import Probed
 from physpipe.probing.hurts import hurts, hurts_of_set

@@ -7,6 +7,8 @@ import av
 import pandas as pd
 import pytest
 
+from physpipe.io import tracks
+
 
 @pytest.mark.parametrize(
     ("to", "files"),
@@ -85,3 +87,13 @@ def test_film_that_is_gone_leaves_no_overlay(run, balls):
     with pytest.raises(SystemExit, match="no such film"):
         run("overlay", "balls", "--pixels", "source")
     assert not Path("exports/balls/overlay").exists()
+
+
+def test_another_table_is_drawn_without_forecasts_unless_they_are_asked_for(run, balls):
+    words = ["overlay", "balls", "--table", "data/truth/balls.parquet"]
+    run(*words)
+    run(*words, "--predictor", "dispnet")
+    table = tracks.load(Path("data/truth/balls.parquet"))
+    tracks.save(Path("data/truth/balls.parquet"), table[table["frame"] < 8], "made up", balls)
+    with pytest.raises(SystemExit, match="forecasts objects or frames of clip two_00 that the tracks lack"):
+        run(*words, "--predictor", "dispnet")

@@ -10,7 +10,8 @@ import pytest
 from physpipe.ingest.dataset import clip_name
 from physpipe.ingest.splits import SplitParams, drawn
 from physpipe.io.clips import SPLITS
-from physpipe.probing.advice import Advice, _cut, advise, geometry, horizon, likely_crop
+from physpipe.probing.advice import Advice, _cut, advise, horizon
+from physpipe.probing.crop import geometry, likely_crop
 from physpipe.probing.findings import Finding, look
 from physpipe.probing.hurts import hurts, hurts_of_set
 

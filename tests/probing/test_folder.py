@@ -11,7 +11,7 @@ import pytest
 from physpipe.core.errors import InputError
 from physpipe.ingest.splits import SplitParams
 from physpipe.probing import sheet
-from physpipe.probing.advice import geometry
+from physpipe.probing.crop import geometry
 from physpipe.probing.folder import probe
 from physpipe.probing.text import described
 
