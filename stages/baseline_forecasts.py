@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from physpipe.core.command import run
+from physpipe.core.horizon import BASELINES, PredictParams
 from physpipe.core.params import read
 from physpipe.io import forecasts, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.predictor_learning.forecasting import forecast
 from physpipe.predictors import PREDICTORS
-from physpipe.predictors.horizon import BASELINES, PredictParams
 from physpipe.predictors.polynomial import NoParams
 
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from physpipe.core.ball import BallParams
 from physpipe.core.command import run
+from physpipe.core.horizon import BASELINES, PredictParams
 from physpipe.core.params import read, read_value
 from physpipe.io import forecasts, results, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.predictors.horizon import BASELINES, PredictParams
 from physpipe.scoring.predictors import EvaluatePredictorsParams, score_predictors
 
 

@@ -4,12 +4,12 @@ from pathlib import Path
 
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.horizon import PredictParams
 from physpipe.core.params import read, read_value
 from physpipe.io import tracks
 from physpipe.io.checkpoints import forget, scratch
 from physpipe.io.clips import ClipSet
 from physpipe.predictor_learning.predicting import learn_predictor, learned_params, predictor_class, save_predictor
-from physpipe.predictors.horizon import PredictParams
 
 
 def main(name: str, predictor: str, clips: Path, found: Path, out: Path) -> None:

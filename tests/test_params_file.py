@@ -9,6 +9,7 @@ from dvc.utils.hydra import apply_overrides
 
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
+from physpipe.core.horizon import PredictParams
 from physpipe.core.params import read, read_value
 from physpipe.exporting.scale import ScaleParams
 from physpipe.flow_learning.film import as_batch, draw_pairs
@@ -17,7 +18,6 @@ from physpipe.flownet.network import CorrFlow
 from physpipe.ingest.dataset import IngestParams
 from physpipe.predictor_learning.predicting import learned_params, predictor_class
 from physpipe.predictors.base import Seen, Window
-from physpipe.predictors.horizon import PredictParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.scenes.presets import PresetsParams, SimulateParams

@@ -6,13 +6,13 @@ from pathlib import Path
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
+from physpipe.core.horizon import PredictParams
 from physpipe.core.parallel import worker_count
 from physpipe.core.params import PARAMS, Section, read
 from physpipe.health.asking import Ask
 from physpipe.health.finding import Finding
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import folders
-from physpipe.predictors.horizon import PredictParams
 from physpipe.report.page import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.tracker_learning.recipe import TrackerParams

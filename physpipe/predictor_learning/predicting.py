@@ -8,6 +8,7 @@ import torch
 from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
+from physpipe.core.horizon import TrainedTo
 from physpipe.core.params import Section
 from physpipe.io import checkpoints, results
 from physpipe.io.clips import ClipSet
@@ -15,7 +16,6 @@ from physpipe.learning.training import FitParams, fit
 from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor
-from physpipe.predictors.horizon import TrainedTo
 
 WEIGHTS, CURVE = "weights.pt", "curve.csv"
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from physpipe.predictors.horizon import BASELINES
+from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
 from physpipe.report.curves import error_distributions
 from physpipe.report.run import SUPERVISIONS, Evidence

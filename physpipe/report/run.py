@@ -9,10 +9,10 @@ import pandas as pd
 from pydantic import Field
 
 from physpipe.core.errors import InputError
+from physpipe.core.horizon import BASELINES
 from physpipe.core.params import Section
 from physpipe.io import forecasts, results, tables, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.predictors.horizon import BASELINES
 from physpipe.report.curves import learning_curves
 
 SUPERVISIONS = ("tracks", "truth")

@@ -6,9 +6,9 @@ import pytest
 import torch
 
 from physpipe.core.determinism import torch_generator
+from physpipe.core.horizon import BASELINES
 from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor, Seen, Window
-from physpipe.predictors.horizon import BASELINES
 from physpipe.predictors.ifs import IfsParams
 from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.polynomial import NoParams

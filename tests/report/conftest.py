@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 from physpipe.core.geometry import Geometry
+from physpipe.core.horizon import BASELINES
 from physpipe.io import clips, forecasts, results, tracks
-from physpipe.predictors.horizon import BASELINES
 from physpipe.report.page import ReportParams, write_page
 from physpipe.report.playing import FilmParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather

@@ -1,7 +1,7 @@
 import pytest
 
 from physpipe.core.errors import InputError
-from physpipe.predictors.horizon import PredictParams
+from physpipe.core.horizon import PredictParams
 
 SECTION = "datasets.bowls.predict"
 
