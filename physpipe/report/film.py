@@ -1,8 +1,10 @@
 """One short film a data set: test clips with what was true, tracked and forecast."""
 
 from collections.abc import Iterator
+from fractions import Fraction
 from pathlib import Path
 
+import av
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from physpipe.core.params import Section
-from physpipe.report.encoding import encode
+from physpipe.io.atomic import replacing
 from physpipe.report.overlays import draw, marks_of
 from physpipe.report.run import Evidence
 
@@ -44,8 +46,7 @@ def write_film(path: Path, evidence: Evidence, predictor: str, upscale: int, tra
     pace = f"{rate:.3g} fps" + (f", played {rate / played:.2g} x slower" if played < rate else "")
     pictures = _pictures(evidence, names, f"dashes: {predictor}; {pace}", upscale, trail)
     frames = sum(len(evidence.clips.frames(name)) for name in names)
-    timed = ((number / played, picture) for number, picture in enumerate(pictures))
-    encode(path, timed, played, params.kilobytes * 8000 * played / frames)
+    _encode(path, pictures, played, params.kilobytes * 8000 * played / frames)
 
 
 def _rate(evidence: Evidence, names: list[str]) -> float:
@@ -59,7 +60,7 @@ def _pictures(evidence: Evidence, names: list[str], note: str, upscale: int, tra
         truth = "ring: truth" if marks.truth.size else "no truth"
         caption = _caption([name, f"{truth}; dot: track", note], frames.shape[2] * upscale)
         for t, frame in enumerate(frames):
-            yield np.concatenate([caption, draw(frame, marks, t, upscale, trail)])
+            yield _even(np.concatenate([caption, draw(frame, marks, t, upscale, trail)]))
 
 
 def _caption(lines: list[str], width: int) -> Picture:
@@ -72,3 +73,23 @@ def _caption(lines: list[str], width: int) -> Picture:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[:, :, :3]
+
+
+def _even(picture: Picture) -> Picture:
+    """Adds a black row or column where a side is odd: yuv420p has no odd sizes."""
+    height, width = picture.shape[:2]
+    return np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)))
+
+
+def _encode(path: Path, pictures: Iterator[Picture], fps: float, bits_per_second: float) -> None:
+    # One thread, no macroblock tree: else x264 gives other bytes in a few runs of a hundred (AVX-512 machines).
+    limits = {"maxrate": str(int(bits_per_second * 0.9)), "bufsize": str(int(bits_per_second))}
+    options = {"crf": "23", "preset": "medium", "threads": "1", "mbtree": "0", **limits}
+    with replacing(path) as temporary, av.open(temporary, "w", options={"movflags": "faststart"}) as container:
+        stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1000), options=options)
+        stream.pix_fmt = "yuv420p"
+        for number, picture in enumerate(pictures):
+            if number == 0:
+                stream.height, stream.width = picture.shape[:2]
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="rgb24")))
+        container.mux(stream.encode())

@@ -4,8 +4,7 @@ import av
 import numpy as np
 import pytest
 
-from physpipe.report.encoding import even
-from physpipe.report.film import FilmParams, shown_clips, write_film
+from physpipe.report.film import FilmParams, _even, shown_clips, write_film
 
 
 def read(path):
@@ -61,7 +60,7 @@ def test_clips_are_spread_over_the_test_split(bowls):
 
 def test_odd_sizes_get_a_black_edge():
     picture = np.full((5, 7, 3), 9, np.uint8)
-    padded = even(picture)
-    assert padded.shape == (6, 8, 3)
-    assert (padded[:5, :7] == 9).all()
-    assert padded.sum() == picture.sum()
+    even = _even(picture)
+    assert even.shape == (6, 8, 3)
+    assert (even[:5, :7] == 9).all()
+    assert even.sum() == picture.sum()
