@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from physpipe.exporting.encoding import encode
 from physpipe.exporting.view import View
 from physpipe.io.clips import ClipSet
 from physpipe.report import colours
-from physpipe.report.encoding import encode
 from physpipe.report.overlays import Marks, draw, marks_of
 
 LETTER_PX = 22.0

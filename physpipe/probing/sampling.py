@@ -28,8 +28,8 @@ BURSTS = 12
 """Places of a long recording that they come from, at most."""
 LONGEST_PX = 480
 """Longest side of a picture looked at."""
-MOST_PIXELS = 150e6
-"""Pixels decoded of one recording: about a second's work."""
+MOST_PIXELS = 250e6
+"""Pixels decoded of one recording: a second's work or two."""
 FEWEST_FRAMES = 24
 """Frames decoded of one recording, however large."""
 Picture = NDArray[np.uint8]

@@ -12,22 +12,18 @@ from physpipe.io.atomic import replacing
 
 TICK = Fraction(1, 90000)
 """Seconds; the unit of the times in the file."""
-QUALITY = {"crf": "23", "preset": "medium"}
 # One thread, no macroblock tree: else x264 gives other bytes in a few runs of a hundred (AVX-512 machines).
-REPEATABLE = {"threads": "1", "mbtree": "0"}
+OPTIONS = {"crf": "20", "preset": "medium", "threads": "1", "mbtree": "0"}
 Picture = NDArray[np.uint8]
 
 
-def encode(path: Path, film: Iterable[tuple[float, Picture]], fps: float, bits_per_second: float | None = None) -> None:
+def encode(path: Path, film: Iterable[tuple[float, Picture]], fps: float) -> None:
     """Writes an MP4 (yuv420p) of (seconds, (H, W, 3) RGB), all of one size; odd sides get a black row or column.
 
-    `fps` is the usual rate, for players that want one; `bits_per_second` an upper bound that the encoder keeps on
-    average.
+    `fps` is the usual rate, for players that want one.
     """
-    limits = {} if bits_per_second is None else _limits(bits_per_second)
-    options = {**QUALITY, **REPEATABLE, **limits}
     with replacing(path) as temporary, av.open(temporary, "w", options={"movflags": "faststart"}) as container:
-        stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1000), options=options)
+        stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1000), options=OPTIONS)
         stream.pix_fmt = "yuv420p"
         stream.codec_context.time_base = TICK
         for number, (time_s, picture) in enumerate(film):
@@ -44,7 +40,3 @@ def even(picture: Picture) -> Picture:
     """Adds a black row or column where a side is odd: yuv420p has no odd sizes."""
     height, width = picture.shape[:2]
     return np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)))
-
-
-def _limits(bits_per_second: float) -> dict[str, str]:
-    return {"maxrate": str(int(bits_per_second * 0.9)), "bufsize": str(int(bits_per_second))}
