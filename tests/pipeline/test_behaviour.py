@@ -17,6 +17,16 @@ def test_a_second_repro_runs_nothing(project):
     assert project.repro() == set()
 
 
+def test_film_that_a_user_adds_stays_when_dvc_checks_out(project):
+    film = project.root / "data/raw/marbles/roll.mp4"
+    film.parent.mkdir()
+    film.write_bytes(b"film")
+    project.run("dvc", "add", "-q", "data/raw/marbles")
+    project.run("dvc", "checkout", "-q")
+    assert film.read_bytes() == b"film"
+    assert "marbles/" not in project.run("git", "status", "--porcelain", "--untracked-files=all")
+
+
 def test_a_tracker_loss_weight_re_runs_the_tracker_and_not_ingest(project):
     project.write({"tracker.recipes.joint.net.losses.entropy": 0.02})
     ran = project.repro()
