@@ -1,10 +1,10 @@
-"""Times what users wait for, on the data sets of the last `dvc repro`, on one thread; prints it and keeps it.
+"""Times what users wait for, on the data sets of the last `dvc repro`; prints it and keeps it.
 
     python benchmarks/speed.py bowls bowls2
 
-Frames/s of every tracker on the test clips (reading them included, all objects), seconds of the first detector's
-training, and of finding out what `dvc repro` has to do. Writes benchmarks/speed.json, which docs/results.md
-takes the rates from.
+Frames/s of every tracker on the test clips, on one thread (reading them included, all objects, ours with its positions
+refined), seconds of the first detector's training, and of finding out what `dvc repro` has to do. Writes
+benchmarks/speed.json, which docs/results.md takes the rates from.
 """
 
 import json
@@ -16,20 +16,21 @@ import time
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
+from typing import Any
 
 import cv2
 import torch
 
+from physpipe.baselines.running import baseline_tracks
 from physpipe.baselines.template import TemplateParams
-from physpipe.baselines.zoo import BaselineParams, baseline_tracks
+from physpipe.baselines.zoo import BaselineParams, Settings, known_flows
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, prepare
-from physpipe.core.params import read
+from physpipe.core.params import read, read_value
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers import detectors
-from physpipe.trackers.learned import ReadoutParams
-from physpipe.trackers.sequential import MaskParams
+from physpipe.trackers.refinement import refined
 
 OUT = Path(__file__).with_name("speed.json")
 SCRATCH = Path(".scratch/benchmark")
@@ -54,23 +55,33 @@ def baseline(name: str, tracker: str) -> Callable[[], object]:
     truth = tracks.load(Path("data/truth") / f"{name}.parquet")
     params = read("baselines", BaselineParams).model_copy(update={"names": [tracker]})
     radius_px = read(f"datasets.{name}.evaluate", BallParams).ball_radius_px
-    template = read("ground_truth", TemplateParams)
-    return lambda: baseline_tracks(clips, given, truth, params, template, radius_px)
+    settings = Settings(params, read("ground_truth", TemplateParams), radius_px, known_flows(params))
+    return lambda: baseline_tracks(clips, given, truth, settings)
 
 
 def unsupervised(name: str) -> Callable[[], object]:
     """Ours, with the detectors that were learned."""
     clips = ClipSet(Path("data/clips") / name)
     nets = detectors.load(Path("data/tracker") / name / "all" / detectors.WEIGHTS)
-    tracker = detectors.together(nets, read("tracker.readout", ReadoutParams), read("tracker.mask", MaskParams))
-    return lambda: [tracker.track_all(clips.frames(each)) for each in clips.names("test")]
+    params = read("tracker.tracking", detectors.TrackingParams)
+    tracker, refine = detectors.together(nets, params), params.refine
+
+    def track() -> None:
+        for each in clips.names("test"):
+            frames = clips.frames(each)
+            for found in tracker.track_all(frames):
+                if refine is not None:
+                    refined(frames, found.xy, refine)
+
+    return track
 
 
 def rates(name: str) -> dict[str, float]:
     """Tracker to frames/s on the test clips of data set `name`."""
     clips = ClipSet(Path("data/clips") / name)
     frames = sum(len(clips.rows(each)) for each in clips.names("test"))
-    work = {"unsupervised": unsupervised(name)}
+    ours = "unsupervised_joint" if read_value("tracker.recipe") == "joint" else "unsupervised"
+    work = {ours: unsupervised(name)}
     work |= {each: baseline(name, each) for each in read("baselines", BaselineParams).names}
     return {tracker: round(frames / seconds(each), 1) for tracker, each in work.items()}
 
@@ -90,7 +101,8 @@ def main(names: list[str]) -> None:
     cv2.setNumThreads(1)
     machine = f"{processor()}, torch {torch.__version__}"
     kept = json.loads(OUT.read_text()) if OUT.is_file() else {}
-    table = kept if kept.get("machine") == machine else {"machine": machine, "rates": {}, "training_s": {}}
+    new: dict[str, Any] = {"machine": machine, "rates": {}, "training_s": {}}
+    table = kept if kept.get("machine") == machine else new
     table |= {"date": date.today().isoformat()}
     for name in names:
         table["rates"][name] = rates(name)
