@@ -15,7 +15,10 @@ from physpipe.predictors.base import Seen, Window, distance_px
 from physpipe.predictors.dispnet import DispNet
 from physpipe.predictors.layers import Locator, bilinear_weights, read_at, reader
 from physpipe.predictors.scene import SPEED, Scene
-from physpipe.predictors.tensor_state import Motion, TensorStateParams
+from physpipe.predictors.tensor_state import FURTHEST, Motion, TensorStateParams
+
+LIVELIEST = 4.0
+"""Largest speed, in lively ones, at which the end is said to be reached: of one missed at the last step, it is huge."""
 
 
 class InterpNetParams(TensorStateParams):
@@ -51,8 +54,13 @@ class InterpNet(DispNet):
         way = scene.regressed[:, -1] - known.place
         left = scene.times[:, -1:] - scene.last_time - known.step  # (B, 1) frames from there to the end
         soon = 1 / left.clamp(min=1).unsqueeze(2)
-        hint = torch.cat([way, way * soon / SPEED, soon.expand(-1, self.objects, -1)], dim=2)
+        speed = (way * soon / SPEED).clamp(-LIVELIEST, LIVELIEST)
+        hint = torch.cat([way, speed, soon.expand(-1, self.objects, -1)], dim=2)
         return torch.cat([hint, super()._look(scene, state, weights, known)], dim=2)
+
+    def _move(self, look: Tensor, known: Motion, now: Motion) -> Motion:
+        moved = super()._move(look, known, now)
+        return moved._replace(place=moved.place.clamp(-FURTHEST, FURTHEST))  # a long way off, the hint would run away
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Mean distance from the target, and from the positions that the first state has to tell, in pixels."""

@@ -8,10 +8,7 @@ what DispNet does.
 
 from torch import Tensor
 
-from physpipe.predictors.tensor_state import Motion, TensorState, TensorStateParams
-
-FURTHEST = 1.0
-"""Largest distance from the frame's centre along x and y, in halves of the frame's longer side: its edge."""
+from physpipe.predictors.tensor_state import FURTHEST, Motion, TensorState, TensorStateParams
 
 
 class PosNet(TensorState):

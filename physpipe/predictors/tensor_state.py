@@ -29,6 +29,8 @@ CHANGE = 1 / 128
 """A lively change of a displacement a frame, in halves of the frame's longer side; brings outputs near 1."""
 WEIGHT = 0.3
 """A lively weight of a seen position; the least-squares slope through four has 0.3 at its ends."""
+FURTHEST = 1.0
+"""Largest distance from the frame's centre along x and y, in halves of the frame's longer side: its edge."""
 POWERS = 6
 """Terms of a quadratic form in a displacement: 1, x, y, x^2, x y, y^2."""
 
