@@ -74,3 +74,12 @@ def test_the_way_to_an_end_that_only_the_last_frame_tells_is_learned_and_not_by_
         missed = (net(fresh.seen, fresh.asked_times).mean - fresh.target).norm(dim=-1)
     still = (fresh.seen.xy[:, -1:] - fresh.target).norm(dim=-1)
     assert (missed.mean(0) < still.mean(0) / 3).all()
+
+
+def test_a_law_that_runs_away_stays_in_the_frame_and_can_still_be_learned_from():
+    window, net = springs(clips=2, frames=40, sees_end=True), interpnet(symmetric=False)
+    torch.nn.init.constant_(net.law[-1].bias, 30.0)
+    found = net(window.seen, window.asked_times).mean
+    assert (found - torch.tensor([WIDTH - 1, HEIGHT - 1]) / 2).abs().max() <= WIDTH / 2 + 1e-3  # px
+    net.loss(window, torch_generator(0))[0].backward()
+    assert all(each.grad.isfinite().all() for each in net.parameters() if each.grad is not None)
