@@ -1,8 +1,9 @@
 """InterpNet: DispNet that also sees the last frame, and fills in what happens between.
 
 Ehrhardt et al. 2018, section 4.4, and arXiv 1706.02179. Theirs: the first state is also made to tell the seen positions
-and the one at the end. Ours: it asks its first layer, which is fine enough, where there is what it looks for; and the
-end so found is shown to every step: where it lies from the object, at what speed it would be reached, and how soon.
+and the one at the end. Ours: it asks its first layer, which is fine enough, where there is what it looks for; and every
+step is told where the end so found lies, how soon it comes, and the steady change of displacement that leads there, of
+which it adds to the law of motion as much as it trusts.
 """
 
 from dataclasses import replace
@@ -13,12 +14,14 @@ from torch import Tensor
 
 from physpipe.predictors.base import Seen, Window, distance_px
 from physpipe.predictors.dispnet import DispNet
-from physpipe.predictors.layers import Locator, bilinear_weights, read_at, reader
-from physpipe.predictors.scene import SPEED, Scene
-from physpipe.predictors.tensor_state import FURTHEST, Motion, TensorStateParams
+from physpipe.predictors.layers import Locator, bilinear_weights, read_at, reader, zero_reader
+from physpipe.predictors.scene import Scene
+from physpipe.predictors.tensor_state import CHANGE, FURTHEST, Motion, TensorStateParams
 
-LIVELIEST = 4.0
-"""Largest speed, in lively ones, at which the end is said to be reached: of one missed at the last step, it is huge."""
+LIVELIEST = 16.0
+"""Largest steady change, in lively ones: of an end that is missed at the last step, it is huge."""
+DOUBT = 2.0
+"""What the steady change is trusted less by before anything is learned, log odds."""
 
 
 class InterpNetParams(TensorStateParams):
@@ -40,6 +43,7 @@ class InterpNet(DispNet):
         self.first_state = params.first_state
         self.ask = reader(2 * params.channels + 2, params.hidden, outputs=(self.seen_frames + 1) * params.stem)
         self.locate = Locator(params.stem)
+        self.trust = zero_reader(self.look_size, params.hidden, outputs=1)
 
     def _scene(self, seen: Seen) -> Scene:
         scene = super()._scene(seen)
@@ -53,14 +57,18 @@ class InterpNet(DispNet):
         assert scene.regressed is not None
         way = scene.regressed[:, -1] - known.place
         left = scene.times[:, -1:] - scene.last_time - known.step  # (B, 1) frames from there to the end
-        soon = 1 / left.clamp(min=1).unsqueeze(2)
-        speed = (way * soon / SPEED).clamp(-LIVELIEST, LIVELIEST)
-        hint = torch.cat([way, speed, soon.expand(-1, self.objects, -1)], dim=2)
-        return torch.cat([hint, super()._look(scene, state, weights, known)], dim=2)
+        soon = 1 / left.clamp(min=1).unsqueeze(2).expand(-1, self.objects, -1)
+        steady = 2 * (way * soon - known.displacement) * soon / (1 + soon)
+        steady = (steady / CHANGE).clamp(-LIVELIEST, LIVELIEST)
+        return torch.cat([steady, way, soon, super()._look(scene, state, weights, known)], dim=2)
+
+    def _change(self, look: Tensor, known: Motion) -> Tensor:
+        trust = torch.sigmoid(self.trust(look).float() - DOUBT)
+        return super()._change(look, known) + CHANGE * trust * look[:, :, :2]
 
     def _move(self, look: Tensor, known: Motion, now: Motion) -> Motion:
         moved = super()._move(look, known, now)
-        return moved._replace(place=moved.place.clamp(-FURTHEST, FURTHEST))  # a long way off, the hint would run away
+        return moved._replace(place=moved.place.clamp(-FURTHEST, FURTHEST))  # a long way off, the way would run away
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Mean distance from the target, and from the positions that the first state has to tell, in pixels."""
