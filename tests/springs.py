@@ -1,5 +1,8 @@
 """Balls on springs, filmed small, shared by tests of predictors; never square."""
 
+import math
+from collections.abc import Callable
+
 import torch
 from torch import Tensor
 
@@ -32,15 +35,27 @@ def spots(xy: Tensor) -> Tensor:
 
 def distances_by_learning(net: Predictor, window: Window, steps: int) -> tuple[float, float]:
     """Mean distance in px before and after learning one batch by heart."""
-    optimiser = torch.optim.Adam(net.parameters(), lr=3e-3)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
     before = distance(net, window)
-    for _ in range(steps):
+    losses_by_learning(net, lambda step: window, steps, rate=3e-3)
+    return before, distance(net, window)
+
+
+def losses_by_learning(
+    net: Predictor, draw: Callable[[int], Window], steps: int, rate: float, clip_norm: float = math.inf
+) -> list[float]:
+    """The loss of every step of learning the windows that `draw` gives for it."""
+    optimiser = torch.optim.Adam(net.parameters(), lr=rate)
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
+    losses = []
+    for step in range(steps):
         optimiser.zero_grad()
-        net.loss(window, torch_generator(0))[0].backward()
+        loss, _parts = net.loss(draw(step), torch_generator(0))
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(net.parameters(), clip_norm)
         optimiser.step()
         schedule.step()
-    return before, distance(net, window)
+        losses.append(loss.item())
+    return losses
 
 
 def distance(net: Predictor, window: Window) -> float:

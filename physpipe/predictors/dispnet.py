@@ -8,10 +8,8 @@ from typing import ClassVar
 from torch import Tensor
 
 from physpipe.core.params import Section
+from physpipe.predictors.kinematics import FASTEST
 from physpipe.predictors.tensor_state import Motion, TensorState, TensorStateParams
-
-FASTEST = 1.0
-"""Largest displacement a frame, in halves of the frame's longer side: nothing that can be followed is as fast."""
 
 
 class DispNet(TensorState):

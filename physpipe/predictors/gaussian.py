@@ -5,6 +5,8 @@ import math
 import torch
 from torch import Tensor
 
+LOG_TAU = math.log(2 * math.pi)
+
 
 def covariance(std: Tensor, angle: Tensor) -> Tensor:
     """(..., 2, 2) with the standard deviations `std` (..., 2) along an axis turned by `angle` (...), and across it."""
@@ -16,8 +18,17 @@ def covariance(std: Tensor, angle: Tensor) -> Tensor:
 
 def nll_nats(mean: Tensor, cov: Tensor, target: Tensor) -> Tensor:
     """(...) negative log density of `target` (..., 2); `cov` (..., 2, 2). In float64, as flat ellipses need it."""
-    cov, (x, y) = cov.double(), (target.double() - mean.double()).unbind(-1)
-    xx, xy, yy = cov[..., 0, 0], cov[..., 0, 1], cov[..., 1, 1]
-    determinant = xx * yy - xy.square()
-    squared = (yy * x.square() - 2 * xy * x * y + xx * y.square()) / determinant
-    return 0.5 * (squared + determinant.log()) + math.log(2 * math.pi)
+    return 0.5 * (squared_mahalanobis(target.double() - mean.double(), cov) + determinant(cov).log()) + LOG_TAU
+
+
+def squared_mahalanobis(missed: Tensor, cov: Tensor) -> Tensor:
+    """(...) squared length of `missed` (..., 2) in standard deviations of `cov` (..., 2, 2), in float64."""
+    x, y = missed.double().unbind(-1)
+    xx, xy, yy = (cov.double()[..., i, j] for i, j in ((0, 0), (0, 1), (1, 1)))
+    return (yy * x.square() - 2 * xy * x * y + xx * y.square()) / determinant(cov)
+
+
+def determinant(cov: Tensor) -> Tensor:
+    """(...) of `cov` (..., 2, 2), in float64."""
+    cov = cov.double()
+    return cov[..., 0, 0] * cov[..., 1, 1] - cov[..., 0, 1].square()

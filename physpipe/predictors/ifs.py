@@ -14,14 +14,9 @@ from torch import Tensor, nn
 
 from physpipe.core.params import Section
 from physpipe.predictors.base import Forecast, Predictor, Seen
-from physpipe.predictors.interaction import InteractionCore, centre_and_unit
-
-SPEED = 1 / 16
-"""A lively displacement a frame, in halves of the frame's longer side; brings inputs near 1."""
-CHANGE = 1 / 128
-"""A lively change of it a frame; brings outputs near 1."""
-FASTEST = 1.0
-"""Largest displacement a frame, in halves of the frame's longer side: nothing that can be followed is as fast."""
+from physpipe.predictors.interaction import InteractionCore
+from physpipe.predictors.kinematics import CHANGE, FASTEST, SPEED, at
+from physpipe.predictors.layers import FrameUnit
 
 
 class IfsParams(Section):
@@ -48,11 +43,9 @@ class Ifs(Predictor):
             nn.init.zeros_(weights)
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
-        centre, unit = centre_and_unit(seen.frames)
+        unit = FrameUnit.of(seen.frames)
         ahead = (asked_times - seen.times[:, -1:]).long()  # (B, N) steps from the last seen frame
-        path = self._roll((seen.xy - centre) / unit, int(ahead.max()))
-        chosen = path[torch.arange(len(path), device=path.device)[:, None], ahead - 1]
-        return Forecast(chosen * unit + centre)
+        return Forecast(unit.to_px(at(self._roll(unit.from_px(seen.xy), int(ahead.max())), ahead)))
 
     def _roll(self, places: Tensor, steps: int) -> Tensor:
         """(B, steps, K, 2) positions after the seen `places` (B, 4, K, 2)."""

@@ -50,9 +50,3 @@ def xavier(layer: Layer) -> Layer:
     if layer.bias is not None:
         nn.init.zeros_(layer.bias)
     return layer
-
-
-def centre_and_unit(frames: Tensor) -> tuple[Tensor, Tensor]:
-    """(2,) centre of `frames` (..., H, W) in pixels, and half of their longer side in pixels: the networks' unit."""
-    size = torch.tensor(frames.shape[:-3:-1], device=frames.device)
-    return (size - 1) / 2, size.max() / 2

@@ -14,9 +14,10 @@ from torch import Tensor
 
 from physpipe.predictors.base import Seen, Window, distance_px
 from physpipe.predictors.dispnet import DispNet
+from physpipe.predictors.kinematics import CHANGE, FURTHEST
 from physpipe.predictors.layers import Locator, bilinear_weights, read_at, reader, zero_reader
 from physpipe.predictors.scene import Scene
-from physpipe.predictors.tensor_state import CHANGE, FURTHEST, Motion, TensorStateParams
+from physpipe.predictors.tensor_state import Motion, TensorStateParams
 
 LIVELIEST = 16.0
 """Largest steady change, in lively ones: of an end that is missed at the last step, it is huge."""

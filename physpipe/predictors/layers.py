@@ -1,5 +1,6 @@
 """Pieces of networks whose state is a grid over the frame."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import torch
@@ -117,9 +118,10 @@ def reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
     return nn.Sequential(nn.Linear(inputs, hidden), nn.ReLU(), nn.Linear(hidden, outputs))
 
 
-def zero_reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
+def zero_reader(inputs: int, hidden: int, outputs: int, activation: Callable[[], nn.Module] = nn.ReLU) -> nn.Sequential:
     """Perceptron of two hidden layers that answers 0 before it has learned anything."""
     last = nn.Linear(hidden, outputs)
     nn.init.zeros_(last.weight)
     nn.init.zeros_(last.bias)
-    return nn.Sequential(nn.Linear(inputs, hidden), nn.ReLU(), nn.Linear(hidden, hidden), nn.ReLU(), last)
+    layers = [nn.Linear(inputs, hidden), activation(), nn.Linear(hidden, hidden), activation()]
+    return nn.Sequential(*layers, last)

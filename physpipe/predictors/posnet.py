@@ -8,7 +8,8 @@ what DispNet does.
 
 from torch import Tensor
 
-from physpipe.predictors.tensor_state import FURTHEST, Motion, TensorState, TensorStateParams
+from physpipe.predictors.kinematics import FURTHEST
+from physpipe.predictors.tensor_state import Motion, TensorState, TensorStateParams
 
 
 class PosNet(TensorState):

@@ -12,10 +12,8 @@ from torch import Tensor, nn
 
 from physpipe.core.params import Section
 from physpipe.predictors.base import Seen
+from physpipe.predictors.kinematics import SPEED, slope
 from physpipe.predictors.layers import FrameUnit, bilinear_weights, everywhere, normed_conv, offsets_from
-
-SPEED = 1 / 16
-"""A lively displacement a frame, in halves of the frame's longer side; brings inputs near 1."""
 
 
 class SceneParams(Section):
@@ -58,10 +56,6 @@ class Scene:
         """(B, 1) time of the last seen position."""
         return self.times[:, self.places.shape[1] - 1, None]
 
-    def velocity(self) -> Tensor:
-        """(B, K, 2) slope of the least-squares line through the seen positions."""
-        return slope(self.places, self.times[:, : self.places.shape[1]])
-
 
 class SceneEncoder(nn.Module):
     """Stacked frames to 1/16 of their size, by convolutions of stride 4, 2 and 2, the objects joining at 1/4."""
@@ -96,12 +90,6 @@ class SceneEncoder(nn.Module):
         offsets = offsets_from(places[:, -1], grid, aspect)
         middle = self.middle(torch.cat([low, marks, offsets, everywhere(velocity / SPEED, grid)], dim=1))
         return self.top(together(middle, self.objects) if self.alike else middle)
-
-
-def slope(places: Tensor, times: Tensor) -> Tensor:
-    """(B, K, 2) slope of the least-squares line through `places` (B, T0, K, 2) at `times` (B, T0)."""
-    centred = times - times.mean(1, keepdim=True)
-    return torch.einsum("bt,btkd->bkd", centred / centred.square().sum(1, keepdim=True), places)
 
 
 def apart(values: Tensor) -> Tensor:

@@ -21,18 +21,10 @@ from pydantic import Field
 from torch import Tensor, nn
 
 from physpipe.predictors.base import Forecast, Predictor, Seen
+from physpipe.predictors.kinematics import POWERS, SPEED, at, change, mended, past
 from physpipe.predictors.layers import Residual, bilinear_weights, everywhere, offsets_from, read_at, zero_reader
-from physpipe.predictors.scene import SPEED, Scene, SceneEncoder, SceneParams, apart, together
+from physpipe.predictors.scene import Scene, SceneEncoder, SceneParams, apart, together
 from physpipe.predictors.symmetry import mean_over_symmetries
-
-CHANGE = 1 / 128
-"""A lively change of a displacement a frame, in halves of the frame's longer side; brings outputs near 1."""
-WEIGHT = 0.3
-"""A lively weight of a seen position; the least-squares slope through four has 0.3 at its ends."""
-FURTHEST = 1.0
-"""Largest distance from the frame's centre along x and y, in halves of the frame's longer side: its edge."""
-POWERS = 6
-"""Terms of a quadratic form in a displacement: 1, x, y, x^2, x y, y^2."""
 
 
 class TensorStateParams(SceneParams):
@@ -91,8 +83,7 @@ class TensorState(Predictor):
     def _forecast_from(self, scene: Scene, asked_times: Tensor) -> Forecast:
         ahead = (asked_times - scene.last_time).long()  # (B, N) steps from the last seen position
         path, looks = self._roll(scene, int(ahead.max()))
-        every = torch.arange(len(path), device=path.device)[:, None]
-        return self._answer(scene, path[every, ahead - 1], looks[every, ahead - 1], ahead)
+        return self._answer(scene, at(path, ahead), at(looks, ahead), ahead)
 
     def _roll(self, scene: Scene, steps: int) -> tuple[Tensor, Tensor]:
         """(B, steps, K, 2) where the objects are, one frame after the other; (B, steps, K, L) what told it."""
@@ -127,19 +118,14 @@ class TensorState(Predictor):
 
     def _begin(self, scene: Scene) -> Motion:
         """The tracks' own last position and displacement, mended by what is seen."""
-        places, last = scene.places, scene.places[:, -1]
-        weights = bilinear_weights(last, scene.grid, scene.unit.aspect)
-        past = ((places - last.unsqueeze(1)) / SPEED).transpose(1, 2).flatten(2)
-        read = [read_at(scene.state, weights), scene.whole, past, places.transpose(1, 2).flatten(2)]
-        mend = self.start(torch.cat(read, dim=2)).float().unflatten(2, (2, self.seen_frames + 1))
-        earlier = (places[:, :-1] - last.unsqueeze(1)).transpose(1, 2)  # (B, K, T0 - 1, 2)
-        mended = CHANGE * mend[..., :2] + WEIGHT * mend[..., 2:] @ earlier  # (B, K, 2, 2): position, displacement
-        return Motion(last + mended[:, :, 0], scene.velocity() + mended[:, :, 1], step=0)
+        weights = bilinear_weights(scene.places[:, -1], scene.grid, scene.unit.aspect)
+        read = [read_at(scene.state, weights), scene.whole, past(scene.places)]
+        mend = self.start(torch.cat(read, dim=2))
+        return Motion(*mended(mend, scene.places, scene.times[:, : scene.places.shape[1]]), step=0)
 
     def _change(self, look: Tensor, known: Motion) -> Tensor:
         """(B, K, 2) by which the displacement changes in a frame, by the law of motion that is read."""
-        law = self.law(look).float().unflatten(2, (2, POWERS))
-        return CHANGE * (law @ _powers(known.displacement / SPEED).unsqueeze(3)).squeeze(3)
+        return change(self.law(look), known.displacement)
 
     @abstractmethod
     def _move(self, look: Tensor, known: Motion, now: Motion) -> Motion:
@@ -148,9 +134,3 @@ class TensorState(Predictor):
     def _answer(self, scene: Scene, path: Tensor, looks: Tensor, ahead: Tensor) -> Forecast:
         """The forecast `ahead` (B, N) frames after the last seen one, from `path` and `looks` there."""
         return Forecast(scene.unit.to_px(path))
-
-
-def _powers(displacement: Tensor) -> Tensor:
-    """(..., POWERS) terms of a quadratic form in `displacement` (..., 2)."""
-    x, y = displacement.unbind(-1)
-    return torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)

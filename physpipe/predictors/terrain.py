@@ -12,16 +12,13 @@ from torch import Tensor, nn
 
 from physpipe.core.params import Section
 from physpipe.predictors.base import Forecast, Predictor, Seen, Window
-from physpipe.predictors.layers import FrameUnit
-from physpipe.predictors.scene import slope
+from physpipe.predictors.kinematics import at, mended, past
+from physpipe.predictors.layers import FrameUnit, zero_reader
 from physpipe.predictors.steadying import camera_shifts
 from physpipe.predictors.symmetry import mean_over_symmetries
-from physpipe.predictors.terrain_law import CHANGE, SPEED, Law, Motion, Scene, read, reader
+from physpipe.predictors.terrain_law import Law, Motion, Scene, read
 from physpipe.predictors.terrain_map import TerrainMap
 from physpipe.predictors.uncertainty import Path, Spread, linearised
-
-WEIGHT = 0.3
-"""A lively weight of a seen position; the least-squares slope through four has 0.3 at its ends."""
 
 
 class TerrainParams(Section):
@@ -60,7 +57,7 @@ class Terrain(Predictor):
         C, hidden, code = params.channels, params.hidden, params.code
         self.map = TerrainMap(C)
         self.describe = nn.Linear(C, code)
-        self.start = reader(2 * C + 4 * self.seen_frames, hidden, outputs=2 * (self.seen_frames + 1))
+        self.start = zero_reader(2 * C + 4 * self.seen_frames, hidden, 2 * (self.seen_frames + 1), nn.SiLU)
         self.law = Law(C, C, code, hidden, pairs=objects > 1)
         self.spread = Spread(objects)
         self.register_buffer("steps", torch.tensor(0))
@@ -75,7 +72,7 @@ class Terrain(Predictor):
         if not self.params.spread_rounds:
             return found
         cov = self.spread(self._path(seen, asked_times).jacobians) * FrameUnit.of(seen.frames).px ** 2
-        return Forecast(found.mean, _at(cov, seen, asked_times))
+        return Forecast(found.mean, at(cov, _ahead(seen, asked_times)))
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Mean distance in pixels over a horizon that grows while it learns: a far error teaches nothing at first."""
@@ -96,38 +93,29 @@ class Terrain(Predictor):
     def _forecast(self, seen: Seen, asked_times: Tensor) -> Forecast:
         scene, now = self._begin(seen)
         path = []
-        for _ in range(_steps(seen, asked_times)):
+        ahead = _ahead(seen, asked_times)
+        for _ in range(int(ahead.max())):
             now = self.law(scene, now)
             path.append(now.place[:, 0])
-        return Forecast(FrameUnit.of(seen.frames).to_px(_at(torch.stack(path, dim=1), seen, asked_times)))
+        return Forecast(FrameUnit.of(seen.frames).to_px(at(torch.stack(path, dim=1), ahead)))
 
     def _path(self, seen: Seen, asked_times: Tensor) -> Path:
         """To the last asked time, frame by frame."""
         scene, now = self._begin(seen)
-        return linearised(lambda motion: self.law(scene, motion), now, _steps(seen, asked_times))
+        return linearised(lambda motion: self.law(scene, motion), now, int(_ahead(seen, asked_times).max()))
 
     def _begin(self, seen: Seen) -> tuple[Scene, Motion]:
         """The scene, and the last seen position and velocity: the tracks' own, mended by what is seen."""
         unit = FrameUnit.of(seen.frames)
         places = unit.from_px(seen.xy - camera_shifts(seen.frames).unsqueeze(2))  # (B, T0, K, 2)
-        last = places[:, -1]
         ground, whole = self.map(seen.frames, unit.aspect)
-        here = read(ground, last.unsqueeze(1), unit.aspect)[:, 0]
-        past = ((places - last.unsqueeze(1)) / SPEED).transpose(1, 2).flatten(2)
-        told = [here, whole.unsqueeze(1).expand(-1, self.objects, -1), past, places.transpose(1, 2).flatten(2)]
-        mend = self.start(torch.cat(told, dim=2)).float().unflatten(2, (2, self.seen_frames + 1))
-        earlier = (places[:, :-1] - last.unsqueeze(1)).transpose(1, 2)  # (B, K, T0 - 1, 2)
-        mended = CHANGE * mend[..., :2] + WEIGHT * mend[..., 2:] @ earlier  # (B, K, 2, 2): position, velocity
-        place, velocity = last + mended[:, :, 0], slope(places, seen.times) + mended[:, :, 1]
+        here = read(ground, places[:, -1:], unit.aspect)[:, 0]
+        told = [here, whole.unsqueeze(1).expand(-1, self.objects, -1), past(places)]
+        place, velocity = mended(self.start(torch.cat(told, dim=2)), places, seen.times)
         scene = Scene(ground, whole, self.describe(here).float(), unit.aspect)
         return scene, Motion(place.unsqueeze(1), velocity.unsqueeze(1))
 
 
-def _steps(seen: Seen, asked_times: Tensor) -> int:
-    return int((asked_times - seen.times[:, -1:]).max())
-
-
-def _at(path: Tensor, seen: Seen, asked_times: Tensor) -> Tensor:
-    """What a path (B, steps, ...) from the frame after the last seen on holds at (B, N) asked times."""
-    ahead = (asked_times - seen.times[:, -1:]).long()
-    return path[torch.arange(len(path), device=path.device)[:, None], ahead - 1]
+def _ahead(seen: Seen, asked_times: Tensor) -> Tensor:
+    """(B, N) frames from the last seen one."""
+    return (asked_times - seen.times[:, -1:]).long()

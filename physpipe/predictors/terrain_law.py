@@ -5,18 +5,11 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from physpipe.predictors.layers import bilinear_weights, read_at
+from physpipe.predictors.kinematics import FASTEST, POWERS, SPEED, change
+from physpipe.predictors.layers import bilinear_weights, read_at, zero_reader
 
-SPEED = 1 / 16
-"""A lively displacement a frame, in halves of the frame's longer side; brings inputs near 1."""
-CHANGE = 1 / 128
-"""A lively change of it a frame; brings outputs near 1."""
-FASTEST = 1.0
-"""Largest displacement a frame, in halves of the frame's longer side: nothing that can be followed is as fast."""
 NEAR = 0.2
 """A lively distance between two objects, in halves of the frame's longer side."""
-POWERS = 6
-"""Terms of a quadratic form in a displacement: 1, x, y, x^2, x y, y^2."""
 
 
 class Motion(NamedTuple):
@@ -49,11 +42,11 @@ class Law(nn.Module):
 
     def __init__(self, channels: int, whole: int, code: int, hidden: int, pairs: bool):
         super().__init__()
-        self.ground = reader(2 * channels + whole + code + 4, hidden, outputs=2 * POWERS)
+        self.ground = zero_reader(2 * channels + whole + code + 4, hidden, 2 * POWERS, nn.SiLU)
         self.direct = nn.Linear(channels, 2 * POWERS)
         nn.init.zeros_(self.direct.weight)
         nn.init.zeros_(self.direct.bias)
-        self.pair = reader(10 + 2 * code, hidden, outputs=2) if pairs else None
+        self.pair = zero_reader(10 + 2 * code, hidden, 2, nn.SiLU) if pairs else None
 
     def forward(self, scene: Scene, now: Motion) -> Motion:
         """One frame later."""
@@ -67,11 +60,10 @@ class Law(nn.Module):
         ahead = now.place + now.velocity
         here = read(scene.map, now.place, scene.aspect)
         seen = [here, read(scene.map, ahead, scene.aspect), same.unsqueeze(1).expand(-1, M, -1, -1), now.place, speed]
-        law = (self.direct(here) + self.ground(torch.cat(seen, dim=-1))).unflatten(-1, (2, POWERS))
-        change = CHANGE * (law @ _powers(speed).unsqueeze(-1)).squeeze(-1)
+        turn = change(self.direct(here) + self.ground(torch.cat(seen, dim=-1)), now.velocity)
         if self.pair is not None:
-            change = change + self._pushes(scene, now)
-        velocity = (now.velocity + change).clamp(-FASTEST, FASTEST)  # else the law's square term may run away
+            turn = turn + self._pushes(scene, now)
+        velocity = (now.velocity + turn).clamp(-FASTEST, FASTEST)  # else the law's square term may run away
         return Motion(now.place + velocity, velocity)
 
     def _pushes(self, scene: Scene, now: Motion) -> Tensor:
@@ -93,17 +85,3 @@ def read(ground: Tensor, place: Tensor, aspect: Tensor) -> Tensor:
     """(B, M, K, C) of the map (B, C, h, w) at (B, M, K, 2)."""
     weights = bilinear_weights(place.flatten(1, 2), (ground.shape[2], ground.shape[3]), aspect)
     return read_at(ground, weights).unflatten(1, place.shape[1:3])
-
-
-def reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
-    """Three-layer perceptron that answers 0 before it has learned anything, so that learning starts from a line."""
-    last = nn.Linear(hidden, outputs)
-    nn.init.zeros_(last.weight)
-    nn.init.zeros_(last.bias)
-    return nn.Sequential(nn.Linear(inputs, hidden), nn.SiLU(), nn.Linear(hidden, hidden), nn.SiLU(), last)
-
-
-def _powers(displacement: Tensor) -> Tensor:
-    """(..., POWERS) terms of a quadratic form in `displacement` (..., 2)."""
-    x, y = displacement.unbind(-1)
-    return torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)

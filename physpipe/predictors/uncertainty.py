@@ -5,17 +5,19 @@ less sure, what gathers them makes it surer, however far ahead. Four standard de
 velocity, of each frame's change of velocity and of what is seen, are fitted to held-out stretches of film.
 """
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
 
+from physpipe.predictors.gaussian import determinant, squared_mahalanobis
 from physpipe.predictors.terrain_law import Motion
 
 WIDTH = (1 / 64, 1 / 256)
 """Steps of the differences in position and velocity, halves of the frame's longer side: a pixel, a quarter of one."""
-SURE = 4.605170185988091
+SURE = -2 * math.log(1 - 0.9)
 """Squared Mahalanobis distance within which 90 % of a bivariate Gaussian lie."""
 WILD = 25.0
 """Squared Mahalanobis distance from which a miss counts no more: a lost track would rule the fit."""
@@ -78,17 +80,12 @@ class Spread(nn.Module):
             for _ in range(rounds):
                 optimiser.zero_grad()
                 cov = self(path.jacobians)
-                loss = (cov.det().log() + squared_distance(missed, cov).clamp(max=WILD)).mean()
+                loss = (determinant(cov).log() + squared_mahalanobis(missed, cov).clamp(max=WILD)).mean()
                 loss.backward()
                 optimiser.step()
         self.logs.requires_grad_(False)
-        distances = squared_distance(missed, self(path.jacobians))
+        distances = squared_mahalanobis(missed, self(path.jacobians))
         self.logs.add_(0.5 * (distances.flatten().quantile(0.9) / SURE).log())
-
-
-def squared_distance(missed: Tensor, cov: Tensor) -> Tensor:
-    """(...) squared Mahalanobis length of (..., 2) under (..., 2, 2)."""
-    return (missed * torch.linalg.solve(cov, missed)).sum(-1)
 
 
 def _joined(motion: Motion) -> Tensor:

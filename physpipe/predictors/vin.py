@@ -20,8 +20,10 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from physpipe.core.params import Section
-from physpipe.predictors.base import Forecast, Predictor, Seen, Window
-from physpipe.predictors.interaction import InteractionCore, centre_and_unit, perceptron, xavier
+from physpipe.predictors.base import Forecast, Predictor, Seen, Window, distance_px
+from physpipe.predictors.interaction import InteractionCore, perceptron, xavier
+from physpipe.predictors.kinematics import SPEED, at
+from physpipe.predictors.layers import FrameUnit
 
 SIDE = 32
 """Pixels to which frames are shrunk, whatever their shape."""
@@ -29,8 +31,6 @@ OFFSETS = (1, 2, 4)
 """Frames that the cores look back."""
 SEEN_FRAMES, CODED = 6, 4
 """Frames seen, and those of them that have a code: each has that is the last of three."""
-SPEED = 1 / 16
-"""A lively displacement a frame, in halves of the frame's longer side; brings outputs near 1."""
 LARGEST = 1e3
 """Largest entry of a code: one that runs away far beyond the horizon stays finite."""
 
@@ -85,12 +85,12 @@ class Vin(Predictor):
         True velocities are the differences of the positions one after the other.
         """
         seen, asked = self._motion(batch.seen, batch.asked_times)
-        distance = _distance(asked.xy, batch.target)
-        seen_px = _distance(seen.xy, batch.seen.xy[:, -CODED:]).mean()
+        distance = distance_px(asked.xy, batch.target)
+        seen_px = distance_px(seen.xy, batch.seen.xy[:, -CODED:]).mean()
         known = torch.cat([batch.seen.xy[:, -CODED - 1 :], batch.target], dim=1)
         times = torch.cat([batch.seen.times[:, -CODED - 1 :], batch.asked_times], dim=1)
         velocity = known.diff(dim=1) / times.diff(dim=1)[..., None, None]
-        astray = _distance(torch.cat([seen.velocity, asked.velocity], dim=1), velocity).mean()
+        astray = distance_px(torch.cat([seen.velocity, asked.velocity], dim=1), velocity).mean()
         loss = distance.mean() + self.seen_weight * seen_px + self.velocity_weight * astray
         return loss, {"train_last_px": distance[:, -1].mean().item(), "train_seen_px": seen_px.item()}
 
@@ -98,10 +98,9 @@ class Vin(Predictor):
         """At the last four seen frames, and at those asked for."""
         ahead = (asked_times - seen.times[:, -1:]).long()  # (B, N) steps from the last seen frame
         codes = self._roll(self._codes(seen.frames), int(ahead.max()))
-        chosen = codes[torch.arange(len(codes), device=codes.device)[:, None], CODED - 1 + ahead]
-        decoded = self.decode(torch.cat([codes[:, :CODED], chosen], dim=1)).float()
-        centre, unit = centre_and_unit(seen.frames)
-        motion = Motion(decoded[..., :2] * unit + centre, decoded[..., 2:] * SPEED * unit)
+        decoded = self.decode(torch.cat([codes[:, :CODED], at(codes[:, CODED:], ahead)], dim=1)).float()
+        unit = FrameUnit.of(seen.frames)
+        motion = Motion(unit.to_px(decoded[..., :2]), decoded[..., 2:] * SPEED * unit.px)
         return Motion(*(each[:, :CODED] for each in motion)), Motion(*(each[:, CODED:] for each in motion))
 
     def _codes(self, frames: Tensor) -> Tensor:
@@ -129,8 +128,3 @@ def _encoder(inputs: int, widths: tuple[int, ...]) -> nn.Sequential:
     for before, after in zip((inputs, *widths), widths, strict=False):
         layers += [xavier(nn.Conv2d(before, after, 3, padding=1)), nn.ReLU(), nn.MaxPool2d(2)]
     return nn.Sequential(*layers, nn.Flatten())
-
-
-def _distance(found: Tensor, true: Tensor) -> Tensor:
-    """(...) length of the difference of (..., 2)."""
-    return ((found - true).square().sum(-1) + 1e-6).sqrt()  # px^2 that keep the gradient finite at 0

@@ -29,13 +29,12 @@ def forecast_figures(
         sums, sizes = per_clip["sum"].to_numpy(float), per_clip["size"].to_numpy(float)
         low, high = bootstrap_interval(sums, sizes, resamples)
         figures |= {key: mean_of_known(which["error_px"]), f"{key}_low": low, f"{key}_high": high}
-    reached = errors_at_multiples(errors, horizon)
     within = errors[errors["frame"] <= horizon]
     return figures | {
         "ade_px": mean_of_known(within["error_px"]),
-        "fde_px": reached["T"],
-        "skill_T": _skill(reached["T"], still["T"]),
-        "skill_2T": _skill(reached["2T"], still["2T"]),
+        "fde_px": figures["error_T_px"],
+        "skill_T": _skill(figures["error_T_px"], still["T"]),
+        "skill_2T": _skill(figures["error_2T_px"], still["2T"]),
         **_within_radius(errors, radius_px),
         **_of_spread(errors, horizon),
         "coverage_90": mean_of_known(within["covered_90"]),

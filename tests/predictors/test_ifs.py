@@ -1,5 +1,6 @@
 import pytest
 import torch
+from springs import losses_by_learning
 from torch import Tensor, nn
 
 from physpipe.core.determinism import torch_generator
@@ -89,17 +90,7 @@ def test_another_object_changes_the_forecast_of_the_first_and_a_lone_one_has_no_
 def test_one_batch_is_learned_thirty_fold(velocity):
     window = springs(clips=4, frames=12)
     net = ifs(2, velocity, drawn=False)
-    optimiser = torch.optim.Adam(net.parameters(), lr=2e-2)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 150)
-    losses = []
-    for _ in range(150):
-        optimiser.zero_grad()
-        loss, _parts = net.loss(window, torch_generator(0))
-        loss.backward()
-        nn.utils.clip_grad_norm_(net.parameters(), 1.0)
-        optimiser.step()
-        schedule.step()
-        losses.append(loss.item())
+    losses = losses_by_learning(net, lambda step: window, 150, rate=2e-2, clip_norm=1.0)
     assert losses[-1] < losses[0] / 30
 
 

@@ -2,7 +2,7 @@ import pytest
 import torch
 from torch import nn
 
-from physpipe.predictors.interaction import InteractionCore, centre_and_unit
+from physpipe.predictors.interaction import InteractionCore
 
 
 def core() -> InteractionCore:
@@ -49,9 +49,3 @@ def test_a_lone_object_has_no_relations():
 def test_what_is_far_away_in_the_batch_has_no_say():
     step, some = core(), states(3)
     torch.testing.assert_close(step(some)[:1], step(some[:1]))
-
-
-def test_the_unit_is_half_of_the_longer_side_from_the_centre_of_the_pixels():
-    centre, unit = centre_and_unit(torch.zeros(2, 4, 3, 20, 48))
-    assert centre.tolist() == [23.5, 9.5]  # x, y; the first pixel's centre is 0
-    assert unit.item() == 24

@@ -1,6 +1,6 @@
 import pytest
 import torch
-from springs import HEIGHT, STATE, WIDTH, distances_by_learning, spots, springs
+from springs import HEIGHT, STATE, WIDTH, distances_by_learning, losses_by_learning, spots, springs
 
 from physpipe.core.determinism import torch_generator
 from physpipe.predictors.base import Seen, Window
@@ -62,13 +62,7 @@ def leaving(clips: int, generator: torch.Generator) -> Window:
 
 def test_the_way_to_an_end_that_only_the_last_frame_tells_is_learned_and_not_by_heart():
     net = interpnet(symmetric=False)
-    optimiser = torch.optim.Adam(net.parameters(), lr=1e-2)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 200)
-    for step in range(200):
-        optimiser.zero_grad()
-        net.loss(leaving(16, torch_generator(0, step)), torch_generator(0))[0].backward()
-        optimiser.step()
-        schedule.step()
+    losses_by_learning(net, lambda step: leaving(16, torch_generator(0, step)), 200, rate=1e-2)
     fresh = leaving(64, torch_generator(1))
     with torch.no_grad():
         missed = (net(fresh.seen, fresh.asked_times).mean - fresh.target).norm(dim=-1)

@@ -1,7 +1,7 @@
 import math
 
 import torch
-from springs import STATE, distances_by_learning, springs
+from springs import STATE, distances_by_learning, losses_by_learning, springs
 from torch import Tensor
 from torch.distributions import MultivariateNormal
 
@@ -72,13 +72,7 @@ def deviations(values: Tensor) -> Tensor:
 
 def test_predicted_deviations_are_the_real_errors_within_a_fifth():
     net = probnet(distance_steps=50, symmetric=False, channels=8)
-    optimiser = torch.optim.Adam(net.parameters(), lr=1e-2)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 300)
-    for step in range(300):
-        optimiser.zero_grad()
-        net.loss(blown(64, torch_generator(0, step)), torch_generator(0))[0].backward()
-        optimiser.step()
-        schedule.step()
+    losses_by_learning(net, lambda step: blown(64, torch_generator(0, step)), 300, rate=1e-2)
     fresh = blown(1000, torch_generator(1))
     with torch.no_grad():
         forecast = net(fresh.seen, fresh.asked_times)

@@ -2,6 +2,7 @@
 
 import pytest
 import torch
+from springs import losses_by_learning
 
 from physpipe.core.determinism import torch_generator
 from physpipe.predictors.base import Seen, Window
@@ -42,16 +43,7 @@ def test_an_untrained_net_goes_straight_on():
 def test_one_batch_is_learned_tenfold():
     window = springs(clips=4, frames=16)
     net = terrain()
-    optimiser = torch.optim.Adam(net.parameters(), lr=3e-3)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 300)
-    losses = []
-    for _ in range(300):
-        optimiser.zero_grad()
-        loss, _parts = net.loss(window, torch_generator(0))
-        loss.backward()
-        optimiser.step()
-        schedule.step()
-        losses.append(loss.item())
+    losses = losses_by_learning(net, lambda step: window, 300, rate=3e-3)
     assert losses[-1] < losses[0] / 10
 
 

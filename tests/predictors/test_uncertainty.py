@@ -4,8 +4,9 @@ import pytest
 import torch
 
 from physpipe.core.determinism import torch_generator
+from physpipe.predictors.gaussian import squared_mahalanobis
 from physpipe.predictors.terrain_law import Motion
-from physpipe.predictors.uncertainty import Path, Spread, linearised, squared_distance
+from physpipe.predictors.uncertainty import Path, Spread, linearised
 
 
 def straight(now: Motion) -> Motion:
@@ -62,7 +63,7 @@ def test_known_noise_is_found_again_to_a_tenth_and_nine_tenths_are_covered():
     cov = made(path.jacobians)
     true = 0.05**2 + (0.03 * torch.arange(1.0, steps + 1)) ** 2
     torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), true.sqrt(), rtol=0.1, atol=0)
-    inside = (squared_distance(target - path.place, cov) < 4.605).float().mean()
+    inside = (squared_mahalanobis(target - path.place, cov) < 4.605).float().mean()
     assert inside.item() == pytest.approx(0.9, abs=0.005)
 
 

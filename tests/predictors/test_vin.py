@@ -1,5 +1,6 @@
 import pytest
 import torch
+from springs import losses_by_learning
 from torch import Tensor, nn
 
 from physpipe.core.determinism import torch_generator
@@ -101,17 +102,7 @@ def test_the_loss_by_hand_of_a_net_that_says_rest_at_the_centre():
 def test_one_batch_is_learned_twenty_fold():
     window = passing(clips=2, frames=9)
     net = vin(params=SMALL.model_copy(update={"velocity_weight": 0.0}))
-    optimiser = torch.optim.Adam(net.parameters(), lr=5e-3)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, 100)
-    losses = []
-    for _ in range(100):
-        optimiser.zero_grad()
-        loss, _parts = net.loss(window, torch_generator(0))
-        loss.backward()
-        nn.utils.clip_grad_norm_(net.parameters(), 1.0)
-        optimiser.step()
-        schedule.step()
-        losses.append(loss.item())
+    losses = losses_by_learning(net, lambda step: window, 100, rate=5e-3, clip_norm=1.0)
     assert losses[-1] < losses[0] / 20
 
 
