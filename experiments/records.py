@@ -10,8 +10,10 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
-CODE = ["physpipe", "stages", "data", "dvc.yaml", "params.yaml"]
-"""What the results of an experiment depend on."""
+AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning"]
+"""Code that only forecasts depend on: trackers need not be measured again when it changes."""
+CODE = ["physpipe", "stages", "data", "dvc.yaml", "params.yaml", *(f":(exclude){folder}" for folder in AFTER_TRACKS)]
+"""What the results of an experiment depend on, as Git's path arguments."""
 COSTS = Path(".scratch/experiments")
 Runner = Callable[..., str]
 

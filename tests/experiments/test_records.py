@@ -1,10 +1,23 @@
 """Names of experiments and what is read back of them."""
 
+from pathlib import Path
+
 import pytest
+import yaml
 from pretended_dvc import BASE, TRACKERS, Pretended
 
-from experiments.records import CommandError, Experiment, command, machine, note_cost, read_results, tracker_only
+from experiments.records import (
+    AFTER_TRACKS,
+    CommandError,
+    Experiment,
+    command,
+    machine,
+    note_cost,
+    read_results,
+    tracker_only,
+)
 
+ROOT = Path(__file__).parents[2]
 ONE, TWO = Experiment("one", ("x=1",)), Experiment("two", ("x=2", "y=[]"))
 
 
@@ -27,6 +40,15 @@ def test_only_one_data_set_s_trackers_are_left_to_run():
     assert "run.simulated=[bowls]" in tracker_only("bowls", 1, simulated=True)
     film = tracker_only("tray", 2, simulated=False)
     assert {"run.datasets=[tray]", "run.simulated=[]", "run.learned=[]", "compute.seed=2"} <= set(film)
+
+
+def test_no_stage_of_a_tracker_reads_the_code_that_may_change():
+    stages = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
+    readers = {name for name, stage in stages.items() if set(AFTER_TRACKS) & set(stage.get("do", stage)["deps"])}
+    of_trackers = {name for name in stages if "track" in name or name in {"simulate", "ingest", "ground_truth"}}
+    assert of_trackers > {"train_tracker", "export_tracks", "evaluate_trackers"}
+    assert readers
+    assert not readers & (of_trackers | {"mask_objects", "train_flow", "report"})
 
 
 def test_a_command_that_fails_says_why():
