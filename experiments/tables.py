@@ -11,6 +11,8 @@ LEARNED = ("unsupervised", "flow_")
 """Beginnings of the names of trackers that were trained."""
 NO_TOOLS = ("centre", "persistence")
 """Rows that stand still, to compare with."""
+TOLD_STARTS = ("lab", "lucas_kanade", "dis_", "farneback_")
+"""Beginnings of the names of tools that are told where each object is when it first shows."""
 COLUMNS = {
     "mean_px": "mean px",
     "paper_mean_px": "paper",
@@ -38,8 +40,9 @@ the JSON names each row's.
 
 `unsupervised` finds one object after the other and is told how many there are; `unsupervised_joint` finds all at once
 and is told nothing; `_unrefined` are the same before positions are moved to the objects' middles. The others learn
-nothing, but for the flow of `flow_*`. `lab`, `lucas_kanade`, `*_simple` and the `*_blob` of a flow are told where each
-object is when it first shows, `trackpy` how large it is.
+nothing, but for `flow_*`, whose flow a small network of our own learned from drawn pairs; all are told how many objects
+there are. `lab`, `lucas_kanade`, `*_simple` and the `*_blob` of a flow are told where each object is when it first
+shows, so they have no choice of an object and no offset from its middle to find; `trackpy` is told how large it is.
 """
 
 
@@ -55,7 +58,7 @@ def page(table: Mapping[str, Mapping[str, Row]], unrun: Mapping[str, str], speed
 
 
 def verdict(rows: Mapping[str, Row]) -> str:
-    """Which tool that learns nothing is best in mean and in 99th percentile, and whether ours is."""
+    """Which tool that learns nothing is best in mean and in 99th percentile, what it is told, and whether ours is."""
     tools = {name: row for name, row in rows.items() if not name.startswith(LEARNED) and name not in NO_TOOLS}
     ours = _ours(rows)
     sentences = []
@@ -64,11 +67,22 @@ def verdict(rows: Mapping[str, Row]) -> str:
         if not known or ours.get(key) is None:
             continue
         best = min(known, key=lambda name: known[name])
-        wins = "ours is as good or better" if ours[key] <= known[best] else f"`{best}` wins"
-        figures = f"{_number(known[best])} px of `{best}` beside {_number(ours[key])} px of ours"
-        lost = rows[best].get("lost")
-        sentences.append(f"In {what} {wins}: {figures}" + (f" (it lost {lost:.0%} of the frames)." if lost else "."))
+        wins = "ours is as good or better" if ours[key] <= known[best] else f"`{best}` wins{_by_what(best)}"
+        figures = f"{_number(known[best])} px of `{best}`{_lost(rows[best])} beside {_number(ours[key])} px of ours"
+        sentences.append(f"In {what} {wins}: {figures}.")
+        found = {name: value for name, value in known.items() if not name.startswith(TOLD_STARTS)}
+        if best not in found and found:
+            near = min(found, key=lambda name: found[name])
+            sentences.append(f"Of those told no start `{near}` is best: {_number(found[near])} px{_lost(rows[near])}.")
     return " ".join(sentences) or "No tool that learns nothing has errors to compare with."
+
+
+def _by_what(name: str) -> str:
+    return ", which is told where each object first is" if name.startswith(TOLD_STARTS) else ""
+
+
+def _lost(row: Row) -> str:
+    return f" (it lost {row['lost']:.0%} of the frames)" if row.get("lost") else ""
 
 
 def _section(name: str, rows: Mapping[str, Row]) -> str:
