@@ -48,9 +48,18 @@ def change(law: Tensor, displacement: Tensor) -> Tensor:
     `law` (..., 2 POWERS) are coefficients of a quadratic form: on a terrain gravity's pull, friction, and what steers a
     path along a curved surface.
     """
-    x, y = (displacement / SPEED).unbind(-1)
-    powers = torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)
-    return CHANGE * (law.float().unflatten(-1, (2, POWERS)) @ powers.unsqueeze(-1)).squeeze(-1)
+    return change_by(law.unflatten(-1, (2, POWERS)), powers(displacement / SPEED))
+
+
+def powers(speed: Tensor) -> Tensor:
+    """(..., POWERS) terms of a quadratic form in `speed` (..., 2)."""
+    x, y = speed.unbind(-1)
+    return torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)
+
+
+def change_by(matrix: Tensor, terms: Tensor) -> Tensor:
+    """(..., D) change in a frame: `matrix` (..., D, N) times `terms` (..., N), lively where both are near 1."""
+    return CHANGE * (matrix.float() @ terms.unsqueeze(-1)).squeeze(-1)
 
 
 def at(path: Tensor, ahead: Tensor) -> Tensor:

@@ -36,6 +36,15 @@ def camera_shifts(frames: Tensor) -> Tensor:
     return -found[..., :2, 0]
 
 
+def camera_path(frames: Tensor) -> Tensor:
+    """(T, 2) px by which the still scene has shifted in each of (T, 3, H, W) frames since the first.
+
+    Summed from frame to frame, so errors add up as a random walk.
+    """
+    steps = camera_shifts(torch.stack([frames[1:], frames[:-1]], dim=1))[:, 0]
+    return torch.cat([steps.new_zeros(1, 2), steps.cumsum(0)])
+
+
 def _slopes(image: Tensor) -> Tensor:
     """(..., H, W - 4): slope along x by differences of the fourth order, right for all but the finest texture."""
     near, far = image[..., 3:-1] - image[..., 1:-3], image[..., 4:] - image[..., :-4]

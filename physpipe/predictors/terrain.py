@@ -3,7 +3,8 @@
 The environment is encoded once from the seen frames into a map. At every step the map is read at the predicted
 position, a small network gives the law of motion there, and velocity and position follow: v += a, p += v. What the
 paper's conclusion asks for: the environment is remembered however long the forecast, and only the motion is propagated.
-The camera's own motion is taken off the seen positions, and a forecast says how sure it is.
+The camera's own motion is taken off the seen positions, and a forecast says how sure it is. A clip is taken to begin
+where the objects are let go, without spin.
 """
 
 import torch
@@ -48,6 +49,7 @@ class Terrain(Predictor):
 
     Params = TerrainParams
     seen_frames = 4
+    sees_past = True
     objects_alike = True
     steps: Tensor
 
@@ -113,7 +115,9 @@ class Terrain(Predictor):
         told = [here, whole.unsqueeze(1).expand(-1, self.objects, -1), past(places)]
         place, velocity = mended(self.start(torch.cat(told, dim=2)), places, seen.times)
         scene = Scene(ground, whole, self.describe(here).float(), unit.aspect)
-        return scene, Motion(place.unsqueeze(1), velocity.unsqueeze(1))
+        since_release = places if seen.earlier is None else torch.cat([unit.from_px(seen.earlier), places], dim=1)
+        now = Motion(place, velocity, self.law.spun(scene, since_release))
+        return scene, Motion(*(each.unsqueeze(1) for each in now))
 
 
 def _ahead(seen: Seen, asked_times: Tensor) -> Tensor:

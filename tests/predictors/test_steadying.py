@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from physpipe.core.determinism import torch_generator
-from physpipe.predictors.steadying import camera_shifts
+from physpipe.predictors.steadying import camera_path, camera_shifts
 
 HEIGHT, WIDTH = 60, 80
 SHIFTS = torch.tensor([[0.5, -0.3], [0.3, 0.2], [-0.2, 0.4], [0.0, 0.0]])
@@ -31,6 +31,10 @@ def test_what_moves_by_itself_has_no_say():
     for number, left in enumerate((20, 24, 28, 32)):
         still[0, number, :, 20:30, left : left + 10] = torch.tensor([1.0, 0.2, 0.0])[:, None, None]
     assert (camera_shifts(still)[0] - SHIFTS).abs().max() < 0.02  # px
+
+
+def test_the_way_from_the_first_frame_is_the_sum_of_the_shifts():
+    assert (camera_path(film((1.0, 1.05, 0.9, 1.0))[0]) - (SHIFTS - SHIFTS[0])).abs().max() < 0.03  # px
 
 
 def test_a_blank_wall_tells_no_shift():

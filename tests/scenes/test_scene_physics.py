@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from physpipe.scenes.bowl import Bowl, BowlParams
 from physpipe.scenes.physics import DENSITY, LeftTerrainError, PhysicsParams, Start, Trajectory, roll
@@ -75,6 +76,45 @@ def test_small_swing_has_the_pendulums_period(friction: float, inertia: float) -
     crossing = np.flatnonzero(np.diff(np.sign(x)))
     period = 2 * (crossing[-1] - crossing[0]) / (len(crossing) - 1) / FPS
     assert period == pytest.approx(expected, rel=0.02)
+
+
+def test_spin_about_the_normal_makes_a_rolling_ball_swerve() -> None:
+    """Rolling without slipping (Routh): v' = 5/7 g + 2/7 s n x n', s' = -v . (n x n'), s the spin times the radius."""
+    steep = BOWL.model_copy(update={"rim_radius_m": (0.36, 0.47), "depth_m": (0.7, 0.7), "cut": 0.35})
+    bowl = Bowl(steep, np.random.default_rng(0))
+    start = Start(np.array([bowl.point(0.7, 1.2)]), np.array([3.34]), np.array([1.8]))
+    rough = LOSSLESS.model_copy(update={"friction": 0.8, "steps_per_frame": 80})
+    trajectory = roll(bowl, start, np.array([RADIUS]), 72, FPS, rough)
+    off = [np.abs(rolling(bowl, start, 72, spins) - trajectory.xyz_m[:, 0]).max() for spins in (True, False)]
+    assert off[0] < 0.003  # m
+    assert off[1] > 0.03
+
+
+def rolling(bowl: Bowl, start: Start, frames: int, spins: bool) -> np.ndarray:
+    """(F, 3) m, the centres of a ball of RADIUS."""
+
+    def normal(x: float, y: float) -> np.ndarray:
+        _, slope_x, slope_y = bowl.height_and_slope(x, y)
+        return np.array([-slope_x, -slope_y, 1]) / np.sqrt(1 + slope_x**2 + slope_y**2)
+
+    def rates(_time: float, state: np.ndarray) -> np.ndarray:
+        (x, y), velocity, spin = state[:2], state[2:5], state[5]
+        n, step = normal(x, y), 1e-5  # m
+        bends = np.stack([normal(x + step, y) - normal(x - step, y), normal(x, y + step) - normal(x, y - step)], 1)
+        bends /= 2 * step
+        foot = np.linalg.solve(np.eye(2) + RADIUS * bends[:2], velocity[:2])  # the centre is RADIUS * n above it
+        turning = bends @ foot
+        pull = np.array([0, 0, -G])
+        along = 5 / 7 * (pull - n * (n @ pull)) + spins * 2 / 7 * spin * np.cross(n, turning)
+        return np.concatenate([foot, along - n * (velocity @ turning), [-velocity @ np.cross(n, turning)]])
+
+    foot, heading = start.foot_m[0], start.heading[0]
+    _, *slope = bowl.height_and_slope(*foot)
+    ahead = np.array([np.cos(heading), np.sin(heading), slope @ np.array([np.cos(heading), np.sin(heading)])])
+    velocity = start.speed_m_s[0] * ahead / np.linalg.norm(ahead)
+    times = np.arange(frames) / FPS
+    feet = solve_ivp(rates, times[[0, -1]], [*foot, *velocity, 0], t_eval=times, rtol=1e-7, atol=1e-8).y[:2].T
+    return np.array([[x, y, bowl.height_and_slope(x, y)[0]] + RADIUS * normal(x, y) for x, y in feet])
 
 
 def collide(restitution: float) -> tuple[np.ndarray, np.ndarray]:
