@@ -19,9 +19,11 @@ class Block(NamedTuple):
     """The page from the fence before, or from its beginning, to this one."""
 
 
-def blocks(page: Path, language: str | None = None) -> list[Block]:
-    """The fenced blocks of a page in their order."""
+def blocks(page: Path, language: str | None = None, section: str | None = None) -> list[Block]:
+    """The fenced blocks of a page in their order, or of its section under the heading `section`."""
     text, end, found = page.read_text(encoding="utf-8"), 0, []
+    if section is not None:
+        text = f"{text}\n## ".split(f"\n## {section}\n")[1].split("\n## ")[0]
     for match in FENCE.finditer(text):
         found.append(Block(match[1], match[2], text[end : match.start()]))
         end = match.end()
