@@ -32,9 +32,13 @@ def blocks(page: Path, language: str | None = None, section: str | None = None) 
 
 def prose(page: Path) -> str:
     """A page without its fenced blocks."""
-    return FENCE.sub("", page.read_text(encoding="utf-8"))
+    text = FENCE.sub("", page.read_text(encoding="utf-8"))
+    assert "```" not in text, "a fence begins its line, and has one that ends it"
+    return text
 
 
 def spans(page: Path) -> list[str]:
     """The code spans of a page's prose."""
-    return SPAN.findall(prose(page))
+    text = prose(page)
+    assert not [line for line in text.splitlines() if line.count("`") % 2], "a code span ends in the line it begins in"
+    return SPAN.findall(text)

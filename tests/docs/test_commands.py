@@ -29,7 +29,7 @@ ASSIGNMENT = re.compile(r"[A-Z_]+=\S*")
 def commands(page: Path) -> Iterator[str]:
     """Those of its `sh` blocks, and those of ours among its code spans."""
     for block in blocks(page, "sh"):
-        yield from (line for line in block.text.splitlines() if line.strip() and not line.startswith("#"))
+        yield from (part for line in block.text.splitlines() if line.strip() for part in line.split(" && "))
     yield from (span for span in spans(page) if " " in span and span.split()[0] in OURS and "…" not in span)
 
 
