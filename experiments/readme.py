@@ -1,6 +1,6 @@
 """The README's table of results, written from `metrics/`: `make repro` ends with it.
 
-    python -m experiments.readme
+python -m experiments.readme
 """
 
 import json

@@ -24,6 +24,12 @@ from physpipe.trackers.tables import ObjectsParams
 PAGE = ROOT / "docs/adding.md"
 PARTS = ("physpipe", "stages", "params.yaml", ".gitignore")
 FRAMES = 30
+EACH = """
+import runpy, sys
+for stage in sys.argv[1:]:
+    name, *sys.argv[1:] = stage.split()
+    runpy.run_module(f"stages.{name}", run_name="__main__")
+"""
 
 
 def changed(text: str, diff: str) -> str:
@@ -61,12 +67,13 @@ class Copy:
             params[name] = params[name] | values
         path.write_text(yaml.safe_dump(params))
 
-    def run(self, stage: str, *words: object) -> None:
-        """A stage, with the copy's code."""
+    def run(self, *stages: str) -> None:
+        """Stages with their words, one after the other, with the copy's code; one process, as PyTorch starts slowly."""
         plain = {name: value for name, value in os.environ.items() if not name.startswith("DVC_")}
         alone = plain | {"PHYSPIPE_WORKERS": "1", "OMP_NUM_THREADS": "1"}
-        command = [sys.executable, "-m", f"stages.{stage}", *map(str, words)]
-        done = subprocess.run(command, cwd=self.root, env=alone, capture_output=True, text=True)
+        done = subprocess.run(
+            [sys.executable, "-c", EACH, *stages], cwd=self.root, env=alone, capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stderr[-3000:]
 
     def params(self) -> dict:
@@ -105,8 +112,7 @@ def test_an_added_tracker_tracks_a_clip(copy, paths):
     film(copy, paths)
     assert "saturation" in copy.params()["baselines"]["names"]
     copy.edit(baselines={"names": ["saturation"]})
-    words = ("bowls", "data/clips/bowls", "data/annotations/bowls", "data/truth/bowls.parquet", "found")
-    copy.run("baseline_tracks", *words)
+    copy.run("baseline_tracks bowls data/clips/bowls data/annotations/bowls data/truth/bowls.parquet found")
     ((clip, xy),) = tracks.by_clip(tracks.load(copy.root / "found/saturation.parquet")).items()
     assert clip == "clip_04"
     apart = np.linalg.norm(xy[:, :, None] - paths[4][:, None], axis=-1).min(axis=2)
@@ -121,9 +127,8 @@ def test_an_added_predictor_learns_a_step_and_forecasts(copy, paths):
     section = params["predictors"]["coasting"]
     small = section | {"fit": section["fit"] | {"steps": 1, "valid_every": 1, "batch_size": 2}}
     copy.edit(predictors={"coasting": small}, datasets={"bowls": {"predict": {"horizon": 6, "interpolation": None}}})
-    known = ("data/clips/bowls", "data/truth/bowls.parquet", "model")
-    copy.run("train_predictor", "bowls", "coasting", *known)
-    copy.run("forecast", "bowls", "coasting", *known, "ahead.parquet")
+    known = "bowls coasting data/clips/bowls data/truth/bowls.parquet model"
+    copy.run(f"train_predictor {known}", f"forecast {known} ahead.parquet")
     table = forecasts.load(copy.root / "ahead.parquet")
     assert table["frame"].agg(["min", "max"]).tolist() == [2, 24]
     first = table[table["frame"] == 2].sort_values("object")[["x", "y"]].to_numpy()
@@ -149,7 +154,7 @@ def test_an_added_world_is_filmed_and_its_section_is_whole(copy):
             | {"simulate": section["simulate"] | {"sizes": {"default": {"clips": 1, "moving_frames": 60}}}}
         }
     )
-    copy.run("simulate", "dish", "raw", "said")
+    copy.run("simulate dish raw said")
     assert [each.name for each in (copy.root / "raw").iterdir()] == ["clip_0000.mp4"]
     xy = pd.read_csv(copy.root / "said/reference.csv")
     assert len(xy) >= 60
