@@ -20,6 +20,7 @@ $(VENV)/.ready: pyproject.toml
 
 repro: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/dvc repro
+	$(BIN)/python -m experiments.readme
 
 ablation results: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m experiments.$@ --jobs $(JOBS)

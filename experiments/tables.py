@@ -68,12 +68,12 @@ def verdict(rows: Mapping[str, Row]) -> str:
             continue
         best = min(known, key=lambda name: known[name])
         wins = "ours is as good or better" if ours[key] <= known[best] else f"`{best}` wins{_by_what(best)}"
-        figures = f"{_number(known[best])} px of `{best}`{_lost(rows[best])} beside {_number(ours[key])} px of ours"
+        figures = f"{number(known[best])} px of `{best}`{_lost(rows[best])} beside {number(ours[key])} px of ours"
         sentences.append(f"In {what} {wins}: {figures}.")
         found = {name: value for name, value in known.items() if not name.startswith(TOLD_STARTS)}
         if best not in found and found:
             near = min(found, key=lambda name: found[name])
-            sentences.append(f"Of those told no start `{near}` is best: {_number(found[near])} px{_lost(rows[near])}.")
+            sentences.append(f"Of those told no start `{near}` is best: {number(found[near])} px{_lost(rows[near])}.")
     return " ".join(sentences) or "No tool that learns nothing has errors to compare with."
 
 
@@ -88,8 +88,8 @@ def _lost(row: Row) -> str:
 def _section(name: str, rows: Mapping[str, Row]) -> str:
     columns = {key: head for key, head in COLUMNS.items() if any(row.get(key) is not None for row in rows.values())}
     order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
-    lines = [_line(["tracker", *columns.values()]), _line(["---", *["---:"] * len(columns)])]
-    lines += [_line([f"`{each}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
+    lines = [line(["tracker", *columns.values()]), line(["---", *["---:"] * len(columns)])]
+    lines += [line([f"`{each}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
     about = _ours(rows) or next(iter(rows.values()))
     seeds = ", ".join(map(str, about["seeds"]))
     time = "" if about["time_s"] is None else f", {about['time_s']:.0f} s the longest seed"
@@ -105,20 +105,22 @@ def _rank(row: Row) -> float:
     return float("inf") if row.get("mean_px") is None else row["mean_px"]
 
 
-def _line(cells: list[str]) -> str:
+def line(cells: list[str]) -> str:
+    """A row of a Markdown table."""
     return f"| {' | '.join(cells)} |\n"
 
 
 def _cell(key: str, row: Row) -> str:
     """The mean, with the worst seed where it differs, and the interval over clips of the mean error."""
     value, worst = row.get(key), row.get("worst", {}).get(key)
-    text = _number(value)
+    text = number(value)
     if key == "mean_px" and row.get("mean_px_low") is not None:
-        text += f" [{_number(row['mean_px_low'])}–{_number(row['mean_px_high'])}]"
-    return text if worst is None or _number(worst) == _number(value) else f"{text} ({_number(worst)})"
+        text += f" [{number(row['mean_px_low'])}–{number(row['mean_px_high'])}]"
+    return text if worst is None or number(worst) == number(value) else f"{text} ({number(worst)})"
 
 
-def _number(value: Any) -> str:
+def number(value: Any) -> str:
+    """A figure in two decimals or none, a dash for what is not known."""
     if value is None:
         return "–"
     if isinstance(value, bool):

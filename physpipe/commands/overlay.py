@@ -17,7 +17,7 @@ from physpipe.report.page import ReportParams
 
 
 def run(words: Namespace) -> None:
-    """Writes `<clip>.mp4` for every clip, and `about.json`."""
+    """Writes `<clip>.mp4` (or another format) for every clip, and `about.json`."""
     name, shown = known_set(words.name), read("report", ReportParams)
     if not words.slower > 0:
         raise InputError("--slower", f"{words.slower:g} is no factor", "give a number above 0")
@@ -34,7 +34,7 @@ def run(words: Namespace) -> None:
         for clip in progress(names, f"overlay {name}"):
             film = words.pixels == "source"
             on = view.of_film(clips, clip, RAW / name) if film else view.of_clip(clips, clip, shown.upscale)
-            write_overlay(folder / f"{clip}.mp4", clips, clip, tables, on, shown.trail_frames, words.slower)
+            write_overlay(folder / f"{clip}.{words.to}", clips, clip, tables, on, shown.trail_frames, words.slower)
     print(f"{len(names)} films: {out}")
 
 

@@ -9,6 +9,7 @@ import shtab
 
 Parser = argparse.ArgumentParser
 FORMATS = ("csv", "mot", "trackpy", "movement")
+FILMS = ("mp4", "webp")
 PORT = 8765
 SPLITS = ("train", "valid", "test")
 
@@ -70,6 +71,7 @@ def _overlay(words: Parser) -> None:
     words.add_argument("--predictor", help="whose forecasts (default: `report.predictor` of params.yaml)")
     _path(words, "--table", metavar="PARQUET", help="another track table (default: the unsupervised tracks)")
     words.add_argument("--slower", type=float, default=1.0, metavar="TIMES", help="than it was filmed (default: 1)")
+    words.add_argument("--to", choices=FILMS, default="mp4", help="a film, or a picture that moves (default: mp4)")
     _path(words, "--out", metavar="FOLDER", help="new, or of an earlier overlay (default: exports/NAME/overlay)")
 
 
@@ -119,7 +121,8 @@ COMMANDS = {
         "draw tracks, truth and forecasts into films of the clips",
         "physpipe overlay bowls\n"
         "physpipe overlay marbles --pixels source --split train\n"
-        "physpipe overlay bowls2 --clips clip_0007_00 clip_0009_00 --slower 4 --predictor linear",
+        "physpipe overlay bowls2 --clips clip_0007_00 clip_0009_00 --slower 4 --predictor linear\n"
+        "physpipe overlay bowls2 --clips clip_0048_00 --to webp --slower 3 --out docs/film",
         _overlay,
     ),
 }

@@ -37,7 +37,7 @@ class Tables:
 
 
 def write_overlay(path: Path, clips: ClipSet, clip: str, tables: Tables, view: View, trail: int, slower: float) -> None:
-    """Writes an H.264 film of one clip, `slower` times as slow as it was filmed.
+    """Writes a film of one clip, `slower` times as slow as it was filmed, in the format that the suffix names.
 
     Objects carry their number; `trail` is the number of past positions drawn behind them.
     """

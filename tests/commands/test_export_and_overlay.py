@@ -78,8 +78,8 @@ def test_overlays_are_of_the_test_clips_at_the_true_rate(run, balls, pixels):
 
 def test_clips_can_be_named_and_film_without_forecasts_drawn(run, balls):
     Path("data/forecasts/balls/tracks/dispnet.parquet").unlink()
-    run("overlay", "balls", "--clips", "one_00", "--out", "mine")
-    assert Path("mine/one_00.mp4").is_file()
+    run("overlay", "balls", "--clips", "one_00", "--to", "webp", "--out", "mine")
+    assert Path("mine/one_00.webp").read_bytes()[8:12] == b"WEBP"
 
 
 def test_film_that_is_gone_leaves_no_overlay(run, balls):

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from physpipe import cli
-from physpipe.commands.words import COMMANDS, SPLITS
+from physpipe.commands.words import COMMANDS, FILMS, FORMATS, SPLITS
+from physpipe.exporting import encoding, formats
 from physpipe.io import clips
 
 MODULES = Path(cli.__file__).parent / "commands"
@@ -21,6 +22,11 @@ def test_every_command_has_a_module_and_every_module_of_a_command_is_one():
 
 def test_splits_are_the_clips_splits():
     assert SPLITS == clips.SPLITS
+
+
+def test_formats_are_those_that_can_be_written():
+    assert set(FORMATS) == set(formats.FORMATS)
+    assert set(FILMS) == set(encoding.FORMATS)
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -7,6 +7,7 @@ import av
 import numpy as np
 import pandas as pd
 import pytest
+from PIL import Image
 from worlds import encoded
 
 from physpipe.core.errors import InputError
@@ -45,6 +46,23 @@ def test_it_plays_at_the_clip_s_own_times(balls, tmp_path, slower):
     pictures, times_s, frame = frames_of(tmp_path / "a.mp4")
     np.testing.assert_allclose(times_s, balls.clips.times_s("film_01") * slower, atol=1e-4)
     assert (frame.width, frame.height, frame.format.name) == (210, 224, "yuv420p")
+
+
+def test_a_moving_picture_has_the_same_frames_at_the_clip_s_own_times_and_plays_for_ever(balls, tmp_path):
+    for suffix in ("mp4", "webp"):
+        on = view.of_clip(balls.clips, "film_01", 7)
+        write_overlay(tmp_path / f"a.{suffix}", balls.clips, "film_01", tables(balls), on, 5, 2.0)
+    film = frames_of(tmp_path / "a.mp4")[0]
+    with Image.open(tmp_path / "a.webp") as moving:
+        assert (moving.format, moving.n_frames, moving.info["loop"]) == ("WEBP", len(film), 0)
+        shown_s = []
+        for t in range(moving.n_frames):
+            moving.seek(t)
+            apart = np.abs(np.asarray(moving.convert("RGB"), int) - film[t])
+            assert apart.mean() < 3  # grey levels; two lossy codecs
+            shown_s.append(moving.info["duration"] / 1000)
+    steps_s = np.diff(balls.clips.times_s("film_01")) * 2.0
+    np.testing.assert_allclose(shown_s[:-1], steps_s, atol=0.0011)  # WebP counts milliseconds
 
 
 def test_a_wavering_rate_is_kept(balls, tmp_path):
