@@ -89,7 +89,7 @@ def collect(
             found = {seed: result for seed, result in mine.items() if result}
             parts[part][row] = _row(found, dataset, TRACKER) if len(found) == len(mine) else None
         runs = [
-            results[each].trackers[dataset][TRACKER]
+            results[each].figures[dataset][TRACKER]
             for key, each in wanted.items()
             if key[0] == part and each in results
         ]
@@ -109,7 +109,7 @@ def choice(runs: Sequence[Row]) -> Row:
 
 
 def _row(found: Mapping[int, Result], dataset: str, tracker: str) -> Row:
-    figures = {seed: {key: each.trackers[dataset][tracker].get(key) for key in FIGURES} for seed, each in found.items()}
+    figures = {seed: {key: each.figures[dataset][tracker].get(key) for key in FIGURES} for seed, each in found.items()}
     commits = sorted({each.commit for each in found.values()})
     return {**over_seeds(figures), "seeds": sorted(found), "commit": ", ".join(commits)}
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from experiments.records import CODE, CommandError, Experiment, Runner, command, finished, note_cost
+from experiments.records import ALL, CommandError, Experiment, Runner, command, finished, note_cost
 
 POLL_S = 10.0
 PREDICTORS = "data/predictors"
@@ -36,10 +36,10 @@ def run_missing(
 
     Raises CommandError when there are uncommitted changes, or when some of them are running already.
     """
-    changed = run("git", "status", "--porcelain", "--", *CODE).strip()
+    changed = run("git", "status", "--porcelain", "--", *ALL).strip()
     if changed:
         raise CommandError(f"results are filed under a commit: commit these changes first\n{changed}")
-    done = finished(run)
+    done = finished(wanted, run)
     missing = [each for each in wanted if each.name not in done]
     if not missing:
         return {}
@@ -63,7 +63,7 @@ def run_missing(
     except KeyboardInterrupt:
         run("dvc", "queue", "stop", "--kill")
         raise
-    done = finished(run)
+    done = finished(missing, run)
     return {each: _reason(ended.get(each.name), run) for each in missing if each.name not in done}
 
 

@@ -9,13 +9,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from experiments.forecast_tables import LEARNED_FROM
 from experiments.spread import Row
-from experiments.tables import NO_TOOLS, OURS, line, number
+from experiments.tables import NO_TOOLS, OURS, Columns, columns_with_figures, line, number
 
 README, METRICS = Path("README.md"), Path("metrics")
 BEGIN, END = "<!-- results: written by `make repro` -->\n", "<!-- end of results -->\n"
 """What the tables stand between."""
-LEARNED_FROM = {"tracks": "unsupervised tracks", "truth": "true positions"}
 LEARN_NOTHING = ("linear", "quadratic")
 """Predictors that are left out; `persistence` stays, which stands still."""
 STILL = "persistence"
@@ -56,9 +56,9 @@ def _predictors(sets: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[list[st
                     yield [name, f"`{each}`", words], rows[each]
 
 
-def _table(heads: list[str], columns: Mapping[str, str], rows: list[tuple[list[str], Row]]) -> str:
+def _table(heads: list[str], columns: Columns, rows: list[tuple[list[str], Row]]) -> str:
     """Columns that no row has a figure for are left out."""
-    shown = {key: head for key, head in columns.items() if any(row.get(key) is not None for _, row in rows)}
+    shown = columns_with_figures(columns, [row for _, row in rows])
     lines = [line(["set", *heads, *shown.values()]), line(["---"] * (1 + len(heads)) + ["---:"] * len(shown))]
     return "".join([*lines, *(line([*names, *(number(row.get(key)) for key in shown)]) for names, row in rows)])
 

@@ -5,15 +5,16 @@ import json
 import platform
 import re
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
 AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning"]
 """Code that only forecasts depend on: trackers need not be measured again when it changes."""
-CODE = ["physpipe", "stages", "data", "dvc.yaml", "params.yaml", *(f":(exclude){folder}" for folder in AFTER_TRACKS)]
-"""What the results of an experiment depend on, as Git's path arguments."""
+ALL = ("physpipe", "stages", "data", "dvc.yaml", "params.yaml")
+CODE = {"trackers": (*ALL, *(f":(exclude){folder}" for folder in AFTER_TRACKS)), "predictors": ALL}
+"""What is measured to the code and the params that it depends on, as Git's path arguments."""
 COSTS = Path(".scratch/experiments")
 Runner = Callable[..., str]
 
@@ -29,6 +30,8 @@ class Experiment(NamedTuple):
     """Letters, digits, `_` and `-`."""
     overrides: tuple[str, ...]
     """Of params.yaml, as `dvc exp run -S` takes them."""
+    measured: str = "trackers"
+    """Key of CODE, and the name of the file in `metrics/` that it is run for."""
 
     @property
     def name(self) -> str:
@@ -39,8 +42,8 @@ class Experiment(NamedTuple):
 class Result(NamedTuple):
     """What one experiment measured."""
 
-    trackers: dict[str, dict[str, dict[str, Any]]]
-    """metrics/trackers.json: data set to tracker to figures."""
+    figures: dict[str, dict[str, dict[str, Any]]]
+    """The file of `metrics/`: data set to tracker to figures, or to what was learned from to predictor to them."""
     commit: str
     """Of the code, shortened."""
     finished: str
@@ -76,33 +79,47 @@ def tracker_only(dataset: str, seed: int, simulated: bool) -> tuple[str, ...]:
     )
 
 
-def finished(run: Runner = command) -> dict[str, str]:
-    """Name to revision of every experiment whose code is today's."""
-    today: dict[str, bool] = {}
+def finished(wanted: Iterable[Experiment], run: Runner = command) -> dict[str, str]:
+    """Name to revision of each that has run on today's code."""
+    measured = {each.name: each.measured for each in wanted}
+    today: dict[tuple[str, str], bool] = {}
     revisions = {}
     for line in run("git", "for-each-ref", "--format=%(objectname) %(refname)", "refs/exps").splitlines():
         found = re.fullmatch(r"(\w+) refs/exps/(\w{2})/(\w{38})/(.+)", line)
-        if found:
+        if found and found[4] in measured:
             revision, base, name = found[1], found[2] + found[3], found[4]
-            if base not in today:
-                today[base] = not run("git", "diff", "--name-only", base, "HEAD", "--", *CODE).strip()
-            if today[base]:
+            key = base, measured[name]
+            if key not in today:
+                today[key] = not run("git", "diff", "--name-only", base, "HEAD", "--", *CODE[measured[name]]).strip()
+            if today[key]:
                 revisions[name] = revision
     return revisions
 
 
 def read_results(wanted: Sequence[Experiment], run: Runner = command) -> dict[Experiment, Result]:
     """Results of those that have finished on today's code."""
-    revisions = finished(run)
+    revisions = finished(wanted, run)
     return {each: _read(each, revisions[each.name], run) for each in wanted if each.name in revisions}
 
 
 def _read(experiment: Experiment, revision: str, run: Runner) -> Result:
-    trackers = json.loads(run("git", "show", f"{revision}:metrics/trackers.json"))
+    figures = json.loads(run("git", "show", f"{revision}:metrics/{experiment.measured}.json"))
     commit, date = run("git", "show", "--no-patch", "--format=%p %cI", revision).split()[-2:]
     note = COSTS / f"{experiment.name}.json"
     cost = json.loads(note.read_text()) if note.is_file() else {"machine": None, "time_s": None}
-    return Result(trackers, commit, date, **cost)
+    return Result(figures, commit, date, **cost)
+
+
+def about(found: Mapping[int, Result]) -> dict[str, Any]:
+    """What to say of a row that comes of these results, by seed: commit, seeds, machine, finished, time_s."""
+    times = [each.time_s for each in found.values()]
+    return {
+        "commit": ", ".join(sorted({each.commit for each in found.values()})),
+        "seeds": sorted(found),
+        "machine": ", ".join(sorted({each.machine or "elsewhere" for each in found.values()})),
+        "finished": max(each.finished for each in found.values()),
+        "time_s": None if None in times else max(time for time in times if time is not None),
+    }
 
 
 def note_cost(name: str, time_s: float | None) -> None:

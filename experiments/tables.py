@@ -1,10 +1,12 @@
 """The tables of docs/results.md, written from the JSON beside them."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from experiments.spread import Row
 
+Columns = dict[str, str]
+"""Key of a figure to the head of its column."""
 OURS = ("unsupervised_joint", "unsupervised")
 """Our trackers, the default recipe's first."""
 LEARNED = ("unsupervised", "flow_")
@@ -13,7 +15,7 @@ NO_TOOLS = ("centre", "persistence")
 """Rows that stand still, to compare with."""
 TOLD_STARTS = ("lab", "lucas_kanade", "dis_", "farneback_")
 """Beginnings of the names of tools that are told where each object is when it first shows."""
-COLUMNS = {
+COLUMNS: Columns = {
     "mean_px": "mean px",
     "paper_mean_px": "paper",
     "var_px2": "variance px²",
@@ -86,7 +88,7 @@ def _lost(row: Row) -> str:
 
 
 def _section(name: str, rows: Mapping[str, Row]) -> str:
-    columns = {key: head for key, head in COLUMNS.items() if any(row.get(key) is not None for row in rows.values())}
+    columns = columns_with_figures(COLUMNS, rows.values())
     order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
     lines = [line(["tracker", *columns.values()]), line(["---", *["---:"] * len(columns)])]
     lines += [line([f"`{each}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
@@ -95,6 +97,11 @@ def _section(name: str, rows: Mapping[str, Row]) -> str:
     time = "" if about["time_s"] is None else f", {about['time_s']:.0f} s the longest seed"
     told = f"Seeds {seeds}; commit {about['commit']}; {about['machine']}{time}; finished {about['finished'][:10]}."
     return f"## {name}\n\n{told}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+
+
+def columns_with_figures(columns: Columns, rows: Collection[Row]) -> Columns:
+    """Those that some row has a figure for."""
+    return {key: head for key, head in columns.items() if any(row.get(key) is not None for row in rows)}
 
 
 def _ours(rows: Mapping[str, Row]) -> Row:

@@ -11,6 +11,7 @@ from experiments.records import (
     CommandError,
     Experiment,
     command,
+    finished,
     machine,
     note_cost,
     read_results,
@@ -30,10 +31,22 @@ def test_an_experiment_s_name_tells_its_overrides_apart():
 def test_results_carry_commit_date_machine_and_time():
     note_cost(ONE.name, 12.0)
     here = read_results([ONE, TWO], Pretended(finished=[(ONE.name, BASE)]))[ONE]
-    assert (here.trackers, here.commit, here.finished) == (TRACKERS, BASE[:7], "2026-01-02T03:04:05+00:00")
+    assert (here.figures, here.commit, here.finished) == (TRACKERS, BASE[:7], "2026-01-02T03:04:05+00:00")
     assert (here.machine, here.time_s) == (machine(), 12)
     elsewhere = read_results([TWO], Pretended(finished=[(TWO.name, BASE)]))[TWO]
     assert (elsewhere.machine, elsewhere.time_s) == (None, None)
+
+
+def test_code_of_forecasts_alone_makes_no_track_and_every_forecast_out_of_date():
+    told: list[tuple[str, ...]] = []
+
+    def git(*words: str) -> str:
+        told.append(words)
+        return f"{'1' * 40} refs/exps/{BASE[:2]}/{BASE[2:]}/{ONE.name}" if words[1] == "for-each-ref" else ""
+
+    for each in (ONE, ONE._replace(measured="predictors")):
+        assert finished([each], git) == {ONE.name: "1" * 40}
+    assert [f":(exclude){AFTER_TRACKS[0]}" in words for words in told if words[1] == "diff"] == [True, False]
 
 
 def test_only_one_data_set_s_trackers_are_left_to_run():

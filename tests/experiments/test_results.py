@@ -5,8 +5,9 @@ from pathlib import Path
 import yaml
 
 from experiments.records import Result
-from experiments.results import collect, experiments, kept, runnable
+from experiments.results import kept, runnable
 from experiments.tables import page, verdict
+from experiments.tracker_runs import collect, experiments
 
 DATASETS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["datasets"]
 

@@ -1,0 +1,63 @@
+"""Which predictors run on which sets, and the rows and tables that come of them."""
+
+from pathlib import Path
+
+import yaml
+
+from experiments.forecast_runs import collect, experiments, grid
+from experiments.forecast_tables import page
+from experiments.records import Result
+
+ROOT = Path(__file__).parents[2]
+DATASETS = yaml.safe_load((ROOT / "params.yaml").read_text())["datasets"]
+PAPER = yaml.safe_load((ROOT / "physpipe/report/paper.yaml").read_text())
+GRID = grid(PAPER, list(DATASETS))
+
+
+def result(error_px: float) -> Result:
+    rows = {"dispnet": {"error_T_px": error_px, "paper_error_T_px": 3.9}, "persistence": {"error_T_px": 33.0}}
+    figures = {"bowls": {"calibration": {}, "tracks": rows, "truth": rows}}
+    return Result(figures, "abc1234", "2026-01-02T03:04:05+00:00", "here", 60.0)
+
+
+def test_the_grid_is_the_papers_with_ours_beside_it():
+    assert GRID["bowls"].keys() == PAPER["predictors"]["bowls"]["tracks"].keys() | {"terrain"}
+    assert GRID["bowls"]["terrain"] == GRID["heights"]["vin"] == ["truth", "tracks"]
+    assert GRID["bowls"]["interpnet"] == GRID["poolr_sim"]["terrain"] == ["tracks"]
+    assert not {"tray", "heightr2_same_sim"} & GRID.keys()
+
+
+def test_an_experiment_runs_one_predictor_on_one_set_and_learns_from_truth_where_the_paper_did():
+    wanted = experiments(GRID, DATASETS, seed=3)
+    on_truth = wanted["bowls", "vin"]
+    assert {"run.learned=[vin]", "run.supervised=[bowls]", "compute.seed=3"} <= set(on_truth.overrides)
+    assert on_truth.measured == "predictors"
+    assert "run.supervised=[]" in wanted["bowlr_sim", "vin"].overrides
+
+
+def test_rows_are_told_apart_by_what_was_learned_from_and_the_others_are_in_once():
+    wanted = experiments(GRID, DATASETS, seed=0)
+    found = {wanted["bowls", "dispnet"]: result(4.0), wanted["bowls", "terrain"]: result(5.0)}
+    table = collect(wanted, found, seed=0)
+    assert table.keys() == {"bowls"}
+    row = table["bowls"]["tracks"]["dispnet"]
+    assert (row["error_T_px"], row["commit"], row["seeds"], row["time_s"]) == (4, "abc1234", [0], 60)
+    assert table["bowls"]["truth"].keys() == {"dispnet", "persistence"}
+
+
+def test_the_page_has_the_papers_figures_beside_ours_and_names_what_has_not_run():
+    wanted = experiments(GRID, DATASETS, seed=0)
+    lines = page(collect(wanted, {wanted["bowls", "dispnet"]: result(4.0)}, seed=0), GRID).splitlines()
+    assert "| predictor | learned from | at T px | paper |" in lines
+    assert "| `dispnet` | unsupervised tracks | 4.00 | 3.90 |" in lines
+    assert "| `persistence` | true positions | 33.00 | – |" in lines
+    lacking = lines[lines.index("## Forecasts on bowls") + 2]
+    assert lacking.startswith("Not run yet: `ifs`, `vin`")
+    assert "`dispnet`" not in lacking
+    assert "## Forecasts on heightr2_sim" in lines
+
+
+def test_interpolation_has_a_table_of_its_own():
+    row = {"error_10_px": 1.5, "paper_error_10_px": 3.8, "error_T_px": 1.0, "seeds": [0], "commit": "a", "machine": "m"}
+    text = page({"bowls": {"tracks": {"interpnet": {**row, "finished": "2026-01-02T03"}}}}, {})
+    assert "| `interpnet` | unsupervised tracks | 1.50 | 3.80 |" in text.splitlines()
