@@ -61,10 +61,8 @@ def learn_predictor(
     `last_frame`: the last one that it learns to forecast. Raises InputError when no window can be learned from.
     """
     kind = predictor_class(params.kind)
-    train, valid = (
-        TrackWindows(clips, table, split, kind.seen_frames, last_frame, kind.sees_end, kind.sees_past)
-        for split in ("train", "valid")
-    )
+    train = TrackWindows(clips, table, "train", kind.seen_frames, last_frame, kind.sees_end, kind.steadies)
+    valid = TrackWindows(clips, table, "valid", kind.seen_frames, last_frame, kind.sees_end)
     print(f"{name}: {len(train)} windows to learn from; {train.skipped} left out, an object is lost in them")
     predictor = kind(params.model, train.objects)
     checked = valid.evenly(params.windows.valid_windows).tolist()

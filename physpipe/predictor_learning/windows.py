@@ -1,7 +1,6 @@
 """Stretches of clips to learn motion from: the first frames and positions seen, the later positions asked for."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -41,9 +40,9 @@ class WindowParams(Section):
 class TrackWindows:
     """Every stretch of `horizon` + 1 frames of one split whose positions are all known.
 
-    With `sees_end` the last frame of a stretch is seen too, with `sees_past` the positions since its clip began. Raises
-    InputError when no clip is so long, when the predictor sees so many frames that none is left to forecast, when clips
-    differ in size or number of objects, or when the tracks lack a clip.
+    With `sees_end` the last frame of a stretch is seen too. With `steady` the camera's motion after the last seen frame
+    is taken off what is asked for. Raises InputError when no clip is so long, when the predictor sees so many frames
+    that none is left to forecast, when clips differ in size or number of objects, or when the tracks lack a clip.
     """
 
     def __init__(
@@ -54,7 +53,7 @@ class TrackWindows:
         seen_frames: int,
         horizon: int,
         sees_end: bool = False,
-        sees_past: bool = False,
+        steady: bool = False,
     ):
         self.seen_frames, self.horizon = seen_frames, horizon
         self.seen = [*range(seen_frames), horizon] if sees_end else list(range(seen_frames))
@@ -72,8 +71,8 @@ class TrackWindows:
             raise InputError(clips.folder / TABLE, f"no tracks of clip {lacking[0]}", "make the tracks again")
         self.frames = [clips.frames(name) for name in names]
         self.xy = [known[name] for name in names]
-        self.camera = self._camera_paths() if sees_past else None
-        """Of each clip, (T, 2) px by which the still scene has shifted since the first frame; None: not asked for."""
+        self.camera = self._camera_paths() if steady else None
+        """Of each clip, (T, 2) px by which the still scene has shifted since the first frame; None: not taken off."""
         whole = [_whole(xy, horizon + 1) for xy in self.xy]
         self.index = np.array([(i, at) for i, ok in enumerate(whole) for at in np.flatnonzero(ok)], np.int64)
         self.skipped = sum(int((~ok).sum()) for ok in whole)
@@ -89,32 +88,25 @@ class TrackWindows:
         """At most `count` window numbers, spread over all clips."""
         return np.unique(np.linspace(0, len(self) - 1, min(count, len(self))).round().astype(np.int64))
 
-    def batch(
-        self, numbers: Sequence[int], symmetries: Sequence[Symmetry] | None = None, steady: bool = False
-    ) -> Window:
-        """The windows of those numbers, each turned and mirrored by its symmetry, on the device.
-
-        `steady`: the camera's motion after the last seen frame is taken off what is asked for, where it is known.
-        """
+    def batch(self, numbers: Sequence[int], symmetries: Sequence[Symmetry] | None = None) -> Window:
+        """The windows of those numbers, each turned and mirrored by its symmetry, on the device."""
         T0, asked = self.seen_frames, self.horizon + 1 - self.seen_frames
-        cut = [self._cut(number, steady) for number in numbers]
+        cut = [self._cut(number) for number in numbers]
         if symmetries is not None:
             cut = [mirrored(*window, how) for window, how in zip(cut, symmetries, strict=True)]
-        path = torch.from_numpy(np.stack([positions for _, positions in cut])).to(device())
-        earlier, xy = path[:, : -self.horizon - 1], path[:, -self.horizon - 1 :]
+        xy = torch.from_numpy(np.stack([positions for _, positions in cut])).to(device())
         times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
         frames = as_input(np.stack([frames for frames, _ in cut]))
-        seen = Seen(frames, xy[:, :T0], times[:, self.seen], earlier if self.camera else None)
-        return Window(seen, times[:, -asked:], xy[:, T0:])
+        return Window(Seen(frames, xy[:, :T0], times[:, self.seen]), times[:, -asked:], xy[:, T0:])
 
     def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
         """`count` random windows, randomly mirrored (and turned, if square), with noise on the seen positions."""
         numbers = self.pick(count, params.first_share, generator)
         flips = torch.randint(2, (count, 3), generator=generator).bool()
         flips[:, 2] &= self.height == self.width
-        drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()], steady=True)
+        drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()])
         noise = torch.randn(drawn.seen.xy.shape, generator=generator).to(device()) * params.noise_px
-        return replace(drawn, seen=replace(drawn.seen, xy=drawn.seen.xy + noise))
+        return Window(Seen(drawn.seen.frames, drawn.seen.xy + noise, drawn.seen.times), drawn.asked_times, drawn.target)
 
     def pick(self, count: int, first_share: float, generator: torch.Generator) -> list[int]:
         """Random window numbers, a share of them from the clips' beginnings where those can be used."""
@@ -125,19 +117,14 @@ class TrackWindows:
             numbers[:firsts] = begin[torch.randint(len(begin), (firsts,), generator=generator)]
         return numbers.tolist()
 
-    def _cut(self, number: int, steady: bool) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        """Seen frames; positions from the clip's beginning, where asked for, or the stretch's to its end."""
+    def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         clip, at = self.index[number]
         frames = self.frames[clip][[at + each for each in self.seen]]
         asked, end = at + self.seen_frames, at + self.horizon + 1
-        path = self.xy[clip][at:end]
-        if self.camera is None:
-            return frames, path
-        still = self.xy[clip] - (self.camera[clip] - self.camera[clip][asked - 1])[:, None]
-        if steady:
-            path = np.concatenate([self.xy[clip][at:asked], still[asked:end]])
-        before = np.full((self.index[:, 1].max() - at, *path.shape[1:]), np.nan, np.float32)
-        return frames, np.concatenate([before, still[:at], path])
+        path = self.xy[clip][at:end].copy()
+        if self.camera is not None:
+            path[self.seen_frames :] -= (self.camera[clip][asked:end] - self.camera[clip][asked - 1])[:, None]
+        return frames, path
 
     def _camera_paths(self) -> list[NDArray[np.float32]]:
         return [camera_path(as_input(np.stack([each]))[0]).cpu().numpy() for each in progress(self.frames, "camera")]

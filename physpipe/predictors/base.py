@@ -20,9 +20,6 @@ class Seen:
     """(B, T0, K, 2) pixels; where the objects are at the end is not given."""
     times: Tensor
     """(B, S) frames since the first one seen."""
-    earlier: Tensor | None = None
-    """(B, P, K, 2) pixels of the last seen frame: where the objects were from the clip's beginning to just before the
-    first frame seen, the camera's motion taken off; NaN before the clip began. None: it begins with the seen ones."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +52,8 @@ class Predictor(nn.Module, ABC):
     """Consecutive frames that it sees, with the positions in them (T0)."""
     sees_end: ClassVar[bool] = False
     """Whether it also sees the frame, not the positions, of the last time that it may be asked for."""
-    sees_past: ClassVar[bool] = False
-    """Whether it asks for `Seen.earlier`, and so learns the motion of the scene without the camera's."""
+    steadies: ClassVar[bool] = False
+    """Whether it takes the camera's motion off what it sees, and so learns the motion of the scene alone."""
     objects_alike: bool = False
     """Whether permuting the objects permutes the forecast and changes nothing else."""
 

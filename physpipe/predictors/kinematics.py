@@ -1,6 +1,7 @@
 """What the predictors share of motion: its scales, its beginning, its law. Lengths are in the unit of `FrameUnit`."""
 
 import torch
+from scipy.signal import savgol_coeffs
 from torch import Tensor
 
 SPEED = 1 / 16
@@ -48,18 +49,22 @@ def change(law: Tensor, displacement: Tensor) -> Tensor:
     `law` (..., 2 POWERS) are coefficients of a quadratic form: on a terrain gravity's pull, friction, and what steers a
     path along a curved surface.
     """
-    return change_by(law.unflatten(-1, (2, POWERS)), powers(displacement / SPEED))
+    x, y = (displacement / SPEED).unbind(-1)
+    powers = torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)
+    return CHANGE * (law.float().unflatten(-1, (2, POWERS)) @ powers.unsqueeze(-1)).squeeze(-1)
 
 
-def powers(speed: Tensor) -> Tensor:
-    """(..., POWERS) terms of a quadratic form in `speed` (..., 2)."""
-    x, y = speed.unbind(-1)
-    return torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)
+def smoothed(path: Tensor, frames: int) -> tuple[Tensor, Tensor, Tensor]:
+    """(B, N, K, 2) places, the displacements that led there, and how those change in the next frame.
 
-
-def change_by(matrix: Tensor, terms: Tensor) -> Tensor:
-    """(..., D) change in a frame: `matrix` (..., D, N) times `terms` (..., N), lively where both are near 1."""
-    return CHANGE * (matrix.float() @ terms.unsqueeze(-1)).squeeze(-1)
+    Of `path` (B, T, K, 2) by the cubic nearest to `frames` of it around each (Savitzky and Golay 1964), where there are
+    as many; N is T - frames + 1. Fewer frames, an odd number, are taken of a shorter path.
+    """
+    width = min(frames, path.shape[1] - 1 + path.shape[1] % 2)
+    around = path.unfold(1, width, 1)  # (B, N, K, 2, width)
+    cubics = (path.new_tensor(savgol_coeffs(width, 3, deriv=order, use="dot")) for order in range(3))
+    place, speed, turn = ((around * each).sum(-1) for each in cubics)  # a matrix product would round
+    return place, speed - turn / 2, turn
 
 
 def at(path: Tensor, ahead: Tensor) -> Tensor:

@@ -120,13 +120,8 @@ def reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
 
 def zero_reader(inputs: int, hidden: int, outputs: int, activation: Callable[[], nn.Module] = nn.ReLU) -> nn.Sequential:
     """Perceptron of two hidden layers that answers 0 before it has learned anything."""
+    last = nn.Linear(hidden, outputs)
+    nn.init.zeros_(last.weight)
+    nn.init.zeros_(last.bias)
     layers = [nn.Linear(inputs, hidden), activation(), nn.Linear(hidden, hidden), activation()]
-    return nn.Sequential(*layers, zero_linear(hidden, outputs))
-
-
-def zero_linear(inputs: int, outputs: int) -> nn.Linear:
-    """Layer that answers 0 before it has learned anything."""
-    layer = nn.Linear(inputs, outputs)
-    nn.init.zeros_(layer.weight)
-    nn.init.zeros_(layer.bias)
-    return layer
+    return nn.Sequential(*layers, last)

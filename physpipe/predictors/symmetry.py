@@ -22,11 +22,9 @@ def mean_over_symmetries(forecast: Callable[[Seen, Tensor], Forecast], seen: See
     for flip_x, flip_y, swap in product((False, True), (False, True), swaps):
         frames = seen.frames.flip([axis for axis, flip in ((-1, flip_x), (-2, flip_y)) if flip])
         xy = mirrored(seen.xy, flip_x, flip_y, height, width)
-        earlier = None if seen.earlier is None else mirrored(seen.earlier, flip_x, flip_y, height, width)
         if swap:
             frames, xy = frames.transpose(-1, -2), xy.flip(-1)
-            earlier = None if earlier is None else earlier.flip(-1)
-        found = forecast(replace(seen, frames=frames, xy=xy, earlier=earlier), asked_times)
+        found = forecast(replace(seen, frames=frames, xy=xy), asked_times)
         means.append(mirrored(found.mean.flip(-1) if swap else found.mean, flip_x, flip_y, height, width))
         if found.cov is not None:
             covs.append(mirrored_cov(found.cov.flip(-1, -2) if swap else found.cov, flip_x, flip_y))

@@ -3,8 +3,10 @@
 The environment is encoded once from the seen frames into a map. At every step the map is read at the predicted
 position, a small network gives the law of motion there, and velocity and position follow: v += a, p += v. What the
 paper's conclusion asks for: the environment is remembered however long the forecast, and only the motion is propagated.
-The camera's own motion is taken off the seen positions, and a forecast says how sure it is. A clip is taken to begin
-where the objects are let go, without spin.
+The camera's own motion is taken off the seen positions, and a forecast says how sure it is.
+
+Learned from forecasts alone the law gets stuck where it is right on the whole and nowhere in particular. So it is first
+matched, place by place, to the changes of velocity along smoothed tracks; then whole forecasts are trained, too.
 """
 
 import torch
@@ -12,14 +14,17 @@ from pydantic import Field
 from torch import Tensor, nn
 
 from physpipe.core.params import Section
-from physpipe.predictors.base import Forecast, Predictor, Seen, Window
-from physpipe.predictors.kinematics import at, mended, past
+from physpipe.predictors.base import Forecast, Predictor, Seen, Window, distance_px
+from physpipe.predictors.kinematics import at, mended, past, smoothed
 from physpipe.predictors.layers import FrameUnit, zero_reader
 from physpipe.predictors.steadying import camera_shifts
 from physpipe.predictors.symmetry import mean_over_symmetries
 from physpipe.predictors.terrain_law import Law, Motion, Scene, read
 from physpipe.predictors.terrain_map import TerrainMap
 from physpipe.predictors.uncertainty import Path, Spread, linearised
+
+TINY = 1e-10
+"""Keeps the gradient of a distance finite at 0; halves of the frame's longer side, squared."""
 
 
 class TerrainParams(Section):
@@ -31,10 +36,12 @@ class TerrainParams(Section):
     """Width of the layers of the laws of motion."""
     code: int = Field(ge=1)
     """Numbers that describe an object."""
-    first_horizon: int = Field(ge=1)
-    """Frames forecast in the first steps of training."""
-    growth_steps: int = Field(ge=0)
-    """Training steps over which that horizon grows to all that are asked for; 0 = all at once."""
+    matched_steps: int = Field(ge=0)
+    """Training steps in which the law is matched to smoothed tracks, before forecasts are trained."""
+    matched_weight: float = Field(ge=0)
+    """Frames squared, weight of the match in the steps after them: changes of velocity against positions."""
+    smoothing_frames: int = Field(ge=5)
+    """Frames, odd, that a track is smoothed over for it, by a cubic; fewer where fewer are asked for."""
     spread_rounds: int = Field(ge=0)
     """Steps of fitting the covariance; 0 = forecasts have none."""
     symmetric: bool
@@ -49,7 +56,7 @@ class Terrain(Predictor):
 
     Params = TerrainParams
     seen_frames = 4
-    sees_past = True
+    steadies = True
     objects_alike = True
     steps: Tensor
 
@@ -77,13 +84,25 @@ class Terrain(Predictor):
         return Forecast(found.mean, at(cov, _ahead(seen, asked_times)))
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
-        """Mean distance in pixels over a horizon that grows while it learns: a far error teaches nothing at first."""
-        asked = batch.asked_times.shape[1]
-        grown = min(1.0, self.steps.item() / self.params.growth_steps) if self.params.growth_steps else 1.0
-        count = min(asked, round(self.params.first_horizon + grown * (asked - self.params.first_horizon)))
+        """How far off the law is along the tracks, in pixels a frame squared; then that of forecasts in pixels, too."""
+        scene, places = self._look(batch.seen)
+        unit = FrameUnit.of(batch.seen.frames)
+        track = torch.cat([places, unit.from_px(batch.target)], dim=1)
+        mismatch = unit.px * self._mismatch(scene, track)
+        parts = {"train_change_px": mismatch.item()}
         self.steps += 1
-        near = Window(batch.seen, batch.asked_times[:, :count], batch.target[:, :count])
-        return super().loss(near, generator)
+        if self.steps <= self.params.matched_steps:
+            return mismatch, parts
+        path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1])
+        distance = distance_px(unit.to_px(path), batch.target)
+        parts["train_last_px"] = distance[:, -1].mean().item()
+        return distance.mean() + self.params.matched_weight * mismatch, parts
+
+    def _mismatch(self, scene: Scene, track: Tensor) -> Tensor:
+        """Mean distance of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame."""
+        place, velocity, turn = smoothed(track, self.params.smoothing_frames)
+        found = self.law(scene, Motion(place, velocity)).velocity - velocity
+        return ((found - turn).square().sum(-1) + TINY).sqrt().mean()
 
     def calibrate(self, held_out: Window) -> None:
         """Fits the covariance, which is of no use before."""
@@ -93,31 +112,39 @@ class Terrain(Predictor):
             self.spread.fit(path, target, self.params.spread_rounds)
 
     def _forecast(self, seen: Seen, asked_times: Tensor) -> Forecast:
-        scene, now = self._begin(seen)
-        path = []
+        scene, places = self._look(seen)
         ahead = _ahead(seen, asked_times)
-        for _ in range(int(ahead.max())):
+        path = self._roll(scene, self._begin(scene, places, seen.times), int(ahead.max()))
+        return Forecast(FrameUnit.of(seen.frames).to_px(at(path, ahead)))
+
+    def _roll(self, scene: Scene, now: Motion, steps: int) -> Tensor:
+        """(B, steps, K, 2) where the objects are, one frame after the other."""
+        path = []
+        for _ in range(steps):
             now = self.law(scene, now)
             path.append(now.place[:, 0])
-        return Forecast(FrameUnit.of(seen.frames).to_px(at(torch.stack(path, dim=1), ahead)))
+        return torch.stack(path, dim=1)
 
     def _path(self, seen: Seen, asked_times: Tensor) -> Path:
         """To the last asked time, frame by frame."""
-        scene, now = self._begin(seen)
+        scene, places = self._look(seen)
+        now = self._begin(scene, places, seen.times)
         return linearised(lambda motion: self.law(scene, motion), now, int(_ahead(seen, asked_times).max()))
 
-    def _begin(self, seen: Seen) -> tuple[Scene, Motion]:
-        """The scene, and the last seen position and velocity: the tracks' own, mended by what is seen."""
+    def _look(self, seen: Seen) -> tuple[Scene, Tensor]:
+        """The scene, and the seen places (B, T0, K, 2) without the camera's motion."""
         unit = FrameUnit.of(seen.frames)
-        places = unit.from_px(seen.xy - camera_shifts(seen.frames).unsqueeze(2))  # (B, T0, K, 2)
+        places = unit.from_px(seen.xy - camera_shifts(seen.frames).unsqueeze(2))
         ground, whole = self.map(seen.frames, unit.aspect)
         here = read(ground, places[:, -1:], unit.aspect)[:, 0]
-        told = [here, whole.unsqueeze(1).expand(-1, self.objects, -1), past(places)]
-        place, velocity = mended(self.start(torch.cat(told, dim=2)), places, seen.times)
-        scene = Scene(ground, whole, self.describe(here).float(), unit.aspect)
-        since_release = places if seen.earlier is None else torch.cat([unit.from_px(seen.earlier), places], dim=1)
-        now = Motion(place, velocity, self.law.spun(scene, since_release))
-        return scene, Motion(*(each.unsqueeze(1) for each in now))
+        return Scene(ground, whole, self.describe(here).float(), unit.aspect), places
+
+    def _begin(self, scene: Scene, places: Tensor, times: Tensor) -> Motion:
+        """The last seen position and velocity: the tracks' own, mended by what is seen."""
+        here = read(scene.map, places[:, -1:], scene.aspect)[:, 0]
+        told = [here, scene.whole.unsqueeze(1).expand(-1, self.objects, -1), past(places)]
+        place, velocity = mended(self.start(torch.cat(told, dim=2)), places, times)
+        return Motion(place.unsqueeze(1), velocity.unsqueeze(1))
 
 
 def _ahead(seen: Seen, asked_times: Tensor) -> Tensor:

@@ -1,17 +1,12 @@
-"""The law of motion on a terrain: one frame ahead, read from the terrain's map at the place of each object (ours).
-
-A ball that rolls on curved ground comes to spin about the ground's normal, and then swerves: no frame shows that spin,
-but where it was let go without one, the path since tells it. With n the normal, v the velocity, g the pull along the
-ground and s the spin times the radius, rolling without slipping gives v' = 5/7 g + 2/7 s n x n' and s' = -v . (n x n').
-"""
+"""The law of motion on a terrain: one frame ahead, read from the terrain's map at the place of each object (ours)."""
 
 from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
 
-from physpipe.predictors.kinematics import FASTEST, POWERS, SPEED, change, change_by, powers
-from physpipe.predictors.layers import bilinear_weights, read_at, zero_linear, zero_reader
+from physpipe.predictors.kinematics import FASTEST, POWERS, SPEED, change
+from physpipe.predictors.layers import bilinear_weights, read_at, zero_reader
 
 NEAR = 0.2
 """A lively distance between two objects, in halves of the frame's longer side."""
@@ -24,8 +19,6 @@ class Motion(NamedTuple):
     """(B, M, K, 2) from the frame's centre, half of its longer side being 1."""
     velocity: Tensor
     """(B, M, K, 2) a frame."""
-    spin: Tensor
-    """(B, M, K, 1) about the ground's normal, as the speed that it gives the surface; 0 where it was let go."""
 
 
 class Scene(NamedTuple):
@@ -50,9 +43,9 @@ class Law(nn.Module):
     def __init__(self, channels: int, whole: int, code: int, hidden: int, pairs: bool):
         super().__init__()
         self.ground = zero_reader(2 * channels + whole + code + 4, hidden, 2 * POWERS, nn.SiLU)
-        self.direct = zero_linear(channels, 2 * POWERS)
-        self.swerve = zero_linear(channels, 4)
-        self.twist = nn.Linear(channels, POWERS)  # not 0 at first: neither of two factors would be learned
+        self.direct = nn.Linear(channels, 2 * POWERS)
+        nn.init.zeros_(self.direct.weight)
+        nn.init.zeros_(self.direct.bias)
         self.pair = zero_reader(10 + 2 * code, hidden, 2, nn.SiLU) if pairs else None
 
     def forward(self, scene: Scene, now: Motion) -> Motion:
@@ -68,31 +61,16 @@ class Law(nn.Module):
         here = read(scene.map, now.place, scene.aspect)
         seen = [here, read(scene.map, ahead, scene.aspect), same.unsqueeze(1).expand(-1, M, -1, -1), now.place, speed]
         turn = change(self.direct(here) + self.ground(torch.cat(seen, dim=-1)), now.velocity)
-        turn = turn + now.spin / SPEED * change_by(self.swerve(here).unflatten(-1, (2, 2)), speed)
         if self.pair is not None:
             turn = turn + self._pushes(scene, now)
         velocity = (now.velocity + turn).clamp(-FASTEST, FASTEST)  # else the law's square term may run away
-        spin = now.spin + self._twisted(here, now.velocity)
-        return Motion(now.place + velocity, velocity, spin.clamp(-FASTEST, FASTEST))
-
-    def spun(self, scene: Scene, path: Tensor) -> Tensor:
-        """(B, K, 1) spin at the last of `path` (B, N, K, 2), N places one frame apart, NaN where not known yet."""
-        known = path.isfinite().all(-1, keepdim=True)
-        places = path.where(known, 0)
-        with torch.autocast(path.device.type, enabled=False):
-            twists = self._twisted(read(scene.map, places[:, :-1], scene.aspect), places.diff(dim=1))
-        return (twists * (known[:, :-1] & known[:, 1:])).sum(1)
-
-    def _twisted(self, here: Tensor, velocity: Tensor) -> Tensor:
-        """(..., 1) change of the spin in a frame."""
-        return change_by(self.twist(here).unsqueeze(-2), powers(velocity / SPEED))
+        return Motion(now.place + velocity, velocity)
 
     def _pushes(self, scene: Scene, now: Motion) -> Tensor:
         """(B, M, K, 2) change of each object's velocity by all others."""
         assert self.pair is not None
         M, K = now.place.shape[1:3]
-        # (B, M, K, K, 2): from i to j
-        apart, closing = (each.unsqueeze(2) - each.unsqueeze(3) for each in (now.place, now.velocity))
+        apart, closing = (each.unsqueeze(2) - each.unsqueeze(3) for each in now)  # (B, M, K, K, 2): from i to j
         soon = apart + closing
         far, near = (each.square().sum(-1, keepdim=True).add(1e-6).sqrt() / NEAR for each in (apart, soon))
         codes = scene.objects.unsqueeze(1).expand(-1, K, -1, -1)

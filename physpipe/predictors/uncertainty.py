@@ -1,8 +1,8 @@
 """How sure a forecast by a law of motion is: errors of the start, carried along the path by the law itself (ours).
 
 The law is linearised along the forecast path (as an extended Kalman filter does): what spreads paths makes a forecast
-less sure, what gathers them makes it surer, however far ahead. Five standard deviations, of the start's position,
-velocity and spin, of each frame's change of velocity and of what is seen, are fitted to held-out stretches of film.
+less sure, what gathers them makes it surer, however far ahead. Four standard deviations, of the start's position and
+velocity, of each frame's change of velocity and of what is seen, are fitted to held-out stretches of film.
 """
 
 import math
@@ -15,8 +15,8 @@ from torch import Tensor, nn
 from physpipe.predictors.gaussian import determinant, squared_mahalanobis
 from physpipe.predictors.terrain_law import Motion
 
-WIDTH = (1 / 64, 1 / 256, 1 / 256)
-"""Steps of differences in position, velocity, spin, in halves of the frame's longer side: a pixel, quarters of one."""
+WIDTH = (1 / 64, 1 / 256)
+"""Steps of the differences in position and velocity, halves of the frame's longer side: a pixel, a quarter of one."""
 SURE = -2 * math.log(1 - 0.9)
 """Squared Mahalanobis distance within which 90 % of a bivariate Gaussian lie."""
 WILD = 25.0
@@ -29,18 +29,17 @@ class Path(NamedTuple):
     place: Tensor
     """(B, N, K, 2) halves of the frame's longer side."""
     jacobians: Tensor
-    """(B, N, 5 K, 5 K): change of each frame's (places, velocities, spins) by those of the frame before."""
+    """(B, N, 4 K, 4 K): change of each frame's (places, velocities) by those of the frame before."""
 
 
 def linearised(step: Callable[[Motion], Motion], start: Motion, steps: int) -> Path:
     """The path of `start` (B, 1, K, 2), and the law's derivatives along it, by central differences."""
     K = start.place.shape[2]
-    widths = torch.cat([torch.full((size,), width) for size, width in zip(_sizes(K), WIDTH, strict=True)])
-    widths = widths.to(start.place)
-    nudges = torch.cat([torch.diag(widths), -torch.diag(widths)])  # (10 K, 5 K)
+    widths = torch.cat([torch.full((2 * K,), WIDTH[0]), torch.full((2 * K,), WIDTH[1])]).to(start.place)
+    nudges = torch.cat([torch.diag(widths), -torch.diag(widths)])  # (8 K, 4 K)
     now, places, jacobians = start, [], []
     for _ in range(steps):
-        around = _joined(now) + torch.cat([torch.zeros_like(nudges[:1]), nudges])  # (B, 1 + 10 K, 5 K)
+        around = _joined(now) + torch.cat([torch.zeros_like(nudges[:1]), nudges])  # (B, 1 + 8 K, 4 K)
         later = _joined(step(_parted(around, K)))
         ups, downs = later[:, 1:].chunk(2, dim=1)
         jacobians.append(((ups - downs) / (2 * widths[:, None])).transpose(1, 2))
@@ -55,16 +54,15 @@ class Spread(nn.Module):
     def __init__(self, objects: int):
         super().__init__()
         self.objects = objects
-        self.logs = nn.Parameter(torch.tensor([-6.0, -7.0, -7.0, -8.0, -5.0]), requires_grad=False)
-        """Logarithms: position, velocity and spin of the start, change of velocity a frame, what is seen."""
+        self.logs = nn.Parameter(torch.tensor([-6.0, -7.0, -8.0, -5.0]), requires_grad=False)
+        """Logarithms: position and velocity of the start, change of velocity a frame, what is seen."""
 
     def forward(self, jacobians: Tensor) -> Tensor:
         """(B, N, K, 2, 2) covariances along a path."""
         K = self.objects
-        *begin, change, seen = self.logs.exp().square()
-        spread = torch.cat([each.expand(size) for each, size in zip(begin, _sizes(K), strict=True)])
-        cov = torch.diag(spread).expand(len(jacobians), -1, -1)
-        noise = torch.diag(torch.cat([change.new_zeros(2 * K), change.expand(2 * K), change.new_zeros(K)]))
+        place, velocity, change, seen = self.logs.exp().square()
+        cov = torch.diag(torch.cat([place.expand(2 * K), velocity.expand(2 * K)])).expand(len(jacobians), -1, -1)
+        noise = torch.diag(torch.cat([change.new_zeros(2 * K), change.expand(2 * K)]))
         along = []
         for J in jacobians.unbind(1):
             cov = J @ cov @ J.transpose(1, 2) + noise
@@ -90,15 +88,11 @@ class Spread(nn.Module):
         self.logs.add_(0.5 * (distances.flatten().quantile(0.9) / SURE).log())
 
 
-def _sizes(objects: int) -> tuple[int, int, int]:
-    """Numbers that all places, all velocities and all spins are made of."""
-    return 2 * objects, 2 * objects, objects
-
-
 def _joined(motion: Motion) -> Tensor:
-    """(B, M, 5 K): all places, then all velocities, then all spins."""
-    return torch.cat([each.flatten(2) for each in motion], dim=2)
+    """(B, M, 4 K): all places, then all velocities."""
+    return torch.cat([motion.place.flatten(2), motion.velocity.flatten(2)], dim=2)
 
 
 def _parted(joined: Tensor, objects: int) -> Motion:
-    return Motion(*(each.unflatten(2, (objects, -1)) for each in joined.split(_sizes(objects), dim=2)))
+    place, velocity = joined.unflatten(2, (2, objects, 2)).unbind(2)
+    return Motion(place, velocity)

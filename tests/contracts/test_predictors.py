@@ -30,7 +30,14 @@ SMALL = {
     "vin": VinParams(channels=4, code=8, hidden=8, seen_weight=0, velocity_weight=0),
     "ifs": IfsParams(hidden=8, velocity=True),
     "terrain": TerrainParams(
-        channels=16, hidden=8, code=2, first_horizon=4, growth_steps=0, spread_rounds=8, symmetric=True
+        channels=16,
+        hidden=8,
+        code=2,
+        matched_steps=0,
+        matched_weight=1,
+        smoothing_frames=5,
+        spread_rounds=8,
+        symmetric=True,
     ),
 }
 

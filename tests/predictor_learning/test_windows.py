@@ -47,15 +47,6 @@ def windows(folder, split="train", seen_frames=4, horizon=8, sees_end=False, **w
     return TrackWindows(found, table, split, seen_frames, horizon, sees_end)
 
 
-def shaken(folder):
-    """Windows with the past of `made`, whose camera is told to go 0.5 px right and 0.25 px up a frame."""
-    found, table = made(folder)
-    whole = TrackWindows(found, table, "train", 4, 8, sees_past=True)
-    way = np.arange(LENGTH, dtype=np.float32)[:, None] * np.array([0.5, -0.25], np.float32)
-    whole.camera = [way] * 2
-    return whole, tracks.by_clip(table), way[:, None]
-
-
 def drawing(noise_px=0.0, first_share=0.0):
     return WindowParams(noise_px=noise_px, first_share=first_share, valid_windows=8)
 
@@ -82,32 +73,14 @@ def test_seen_frames_show_the_objects_at_the_seen_positions(tmp_path):
             np.testing.assert_array_equal(lit(frames.permute(0, 2, 3, 1).numpy(), k), xy[:, k].numpy())
 
 
-def test_the_past_is_told_from_the_clip_s_beginning_without_the_camera_s_motion(tmp_path):
-    found, known, way = shaken(tmp_path / "set")
-    batch = found.batch([0, 2])
-    assert batch.seen.earlier.shape == (2, 3, OBJECTS, 2)  # no window begins after frame 3
-    assert batch.seen.earlier[0].isnan().all()
-    assert batch.seen.earlier[1, :1].isnan().all()
-    expected = known["c0"][:2] - (way[:2] - way[5])  # as if all had been filmed with the last seen frame
-    np.testing.assert_allclose(batch.seen.earlier[1, 1:], expected, atol=1e-5)
-    np.testing.assert_array_equal(batch.seen.xy[1], known["c0"][2:6])
-    np.testing.assert_array_equal(batch.target[1], known["c0"][6:11])
-
-
-def test_training_asks_for_the_motion_of_the_scene_and_validation_for_that_in_the_frame(tmp_path):
-    found, known, way = shaken(tmp_path / "set")
-    steady = found.batch([2], steady=True)
-    np.testing.assert_allclose(steady.target[0], known["c0"][6:11] - (way[6:11] - way[5]), atol=1e-5)
-    drawn = found.draw(64, drawing(), torch_generator(0)).target
-    assert (drawn % 0.25 == 0).all()
-    assert not (drawn % 1 == 0).all()
-
-
-def test_the_past_is_mirrored_with_the_rest(tmp_path):
-    found, _, _ = shaken(tmp_path / "set")
-    upright, turned = found.batch([2]).seen, found.batch([2], [(True, False, False)]).seen
-    np.testing.assert_allclose(turned.earlier[0, 1:, :, 0], 27 - upright.earlier[0, 1:, :, 0], atol=1e-5)
-    np.testing.assert_allclose(turned.earlier[0, 1:, :, 1], upright.earlier[0, 1:, :, 1], atol=1e-5)
+def test_the_camera_s_motion_after_the_last_seen_frame_is_taken_off_what_is_asked_for(tmp_path):
+    found, table = made(tmp_path / "set")
+    steady = TrackWindows(found, table, "train", 4, 8, steady=True)
+    way = np.arange(LENGTH, dtype=np.float32)[:, None] * np.array([0.5, -0.25], np.float32)
+    steady.camera = [way] * 2
+    batch, xy = steady.batch([2]), tracks.by_clip(table)["c0"]
+    np.testing.assert_array_equal(batch.seen.xy[0], xy[2:6])
+    np.testing.assert_allclose(batch.target[0], xy[6:11] - (way[6:11] - way[5])[:, None], atol=1e-5)  # px
 
 
 def test_the_end_is_seen_by_a_frame_that_shows_the_last_target_and_by_no_position(tmp_path):

@@ -3,7 +3,7 @@
 import torch
 
 from physpipe.core.determinism import torch_generator
-from physpipe.predictors.kinematics import CHANGE, POWERS, SPEED, at, change, mended, past, slope
+from physpipe.predictors.kinematics import CHANGE, POWERS, SPEED, at, change, mended, past, slope, smoothed
 
 TIMES = torch.arange(4.0).expand(2, -1)
 
@@ -53,3 +53,23 @@ def test_what_is_read_of_the_past_is_each_object_s_own():
 def test_a_path_is_looked_up_by_frames_ahead():
     path = torch.arange(10.0).reshape(2, 5, 1)
     assert at(path, torch.tensor([[1, 5], [2, 2]])).flatten().tolist() == [0, 4, 6, 6]
+
+
+def test_a_smoothed_parabola_is_itself_and_steps_on_exactly():
+    """p += v + a leads from each place to the next."""
+    times = torch.arange(13.0)[None, :, None, None]
+    path = 3 + times * torch.tensor([0.5, -2.0]) + times**2 * torch.tensor([0.02, 0.1])
+    place, step, turn = smoothed(path, frames=7)
+    torch.testing.assert_close(place, path[:, 3:10], rtol=0, atol=1e-4)
+    torch.testing.assert_close(step, path[:, 3:10] - path[:, 2:9], rtol=0, atol=1e-4)
+    torch.testing.assert_close((place + step + turn)[:, :-1], place[:, 1:], rtol=0, atol=1e-4)
+
+
+def test_smoothing_leaves_a_tenth_of_the_noise_of_second_differences():
+    noise = torch.randn(50, 40, 1, 2, generator=torch_generator(1))
+    rough = (noise[:, 2:] - 2 * noise[:, 1:-1] + noise[:, :-2]).std()
+    assert smoothed(noise, frames=9)[2].std() < rough / 10
+
+
+def test_a_short_path_is_smoothed_over_what_there_is():
+    assert smoothed(torch.zeros(2, 8, 1, 2), frames=9)[0].shape == (2, 2, 1, 2)

@@ -1,20 +1,24 @@
 """Facts about the forecaster that reads its law of motion from a map."""
 
-from dataclasses import replace
-from itertools import pairwise
-
 import pytest
 import torch
 from springs import losses_by_learning
 
 from physpipe.core.determinism import torch_generator
 from physpipe.predictors.base import Seen, Window
-from physpipe.predictors.kinematics import CHANGE, SPEED
 from physpipe.predictors.terrain import Terrain, TerrainParams
-from physpipe.predictors.terrain_law import Law, Scene, read
 
 HEIGHT, WIDTH = 40, 48
-SMALL = TerrainParams(channels=16, hidden=32, code=2, first_horizon=4, growth_steps=0, spread_rounds=40, symmetric=True)
+SMALL = TerrainParams(
+    channels=16,
+    hidden=32,
+    code=2,
+    matched_steps=0,
+    matched_weight=0,
+    smoothing_frames=5,
+    spread_rounds=40,
+    symmetric=True,
+)
 
 
 def springs(clips: int, frames: int, objects: int = 1) -> Window:
@@ -73,46 +77,15 @@ def test_an_object_is_pushed_by_another_only_where_there_is_one():
     assert terrain(objects=1).law.pair is None
 
 
-def test_a_path_known_from_the_release_on_tells_the_spin():
-    """The same four frames seen, after another way there: another forecast, as the equations of rolling say."""
-    window, net = springs(clips=2, frames=20), terrain(drawn=0.05).eval()
-    seen = Seen(window.seen.frames, window.target[:, 4:8], window.seen.times)
-    asked = window.asked_times[:, :8]
-    alone = net(seen, asked).mean
-    unknown = torch.full((2, 5, 1, 2), torch.nan)
-    assert torch.equal(net(replace(seen, earlier=unknown), asked).mean, alone)
-    came = torch.cat([unknown, window.seen.xy, window.target[:, :4]], dim=1)
-    assert (net(replace(seen, earlier=came), asked).mean - alone).abs().max() > 0.02  # px
-
-
-def test_spin_grows_with_every_frame_by_the_law_of_motion_itself():
-    window, law = springs(clips=2, frames=8), terrain(drawn=0.05).law
-    scene, now = terrain(drawn=0.05)._begin(window.seen)
-    path = [now]
-    for _ in range(3):
-        path.append(law(scene, path[-1]))
-    places = torch.cat([path[0].place - path[0].velocity, *(each.place for each in path)], dim=1)
-    # the law takes the velocity that led to a place, the path the one that leads away: the same one frame later
-    expected = sum(CHANGE * twist(law, scene, here, there) for here, there in pairwise(places.unbind(1)))
-    torch.testing.assert_close(law.spun(scene, places), expected, rtol=1e-4, atol=1e-7)
-
-
-def twist(law: Law, scene: Scene, here: torch.Tensor, there: torch.Tensor) -> torch.Tensor:
-    """(B, K, 1) what the law says of one step, in CHANGE."""
-    x, y = ((there - here) / SPEED).unbind(-1)
-    terms = torch.stack([torch.ones_like(x), x, y, x * x, x * y, y * y], dim=-1)
-    return (law.twist(read(scene.map, here[:, None], scene.aspect)[:, 0]) * terms).sum(-1, keepdim=True)
-
-
-def test_the_horizon_grows_from_its_first_frames_to_all():
-    window = springs(clips=2, frames=24)
-    net = terrain(first_horizon=4, growth_steps=10).train()
-    straight = net(window.seen, window.asked_times).mean - window.target
-    by_frame = straight.square().sum(-1).sqrt().mean((0, 2))
-    first = net.loss(window, torch_generator(0))[0].item()
-    assert first == pytest.approx(by_frame[:4].mean().item(), abs=1e-2)  # px
-    net.steps.fill_(10)
-    assert net.loss(window, torch_generator(0))[0].item() == pytest.approx(by_frame.mean().item(), abs=1e-2)
+def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():
+    window = springs(clips=4, frames=24)
+    net = terrain(matched_steps=300, smoothing_frames=7)
+    losses = losses_by_learning(net, lambda step: window, 300, rate=3e-3)
+    assert losses[-1] < losses[0] / 10  # px a frame squared
+    off = (net.train()(window.seen, window.asked_times).mean - window.target).norm(dim=-1)
+    assert off[:, -1].mean() < 1.5  # px after 20 frames; straight on it is 15
+    _, parts = net.loss(window, torch_generator(0))
+    assert parts["train_last_px"] == pytest.approx(off[:, -1].mean().item(), abs=1e-2)
 
 
 def test_a_shaken_camera_changes_no_forecast_of_the_scene_before_it():

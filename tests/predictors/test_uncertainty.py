@@ -10,7 +10,7 @@ from physpipe.predictors.uncertainty import Path, Spread, linearised
 
 
 def straight(now: Motion) -> Motion:
-    return Motion(now.place + now.velocity, now.velocity, now.spin)
+    return Motion(now.place + now.velocity, now.velocity)
 
 
 def spread(objects: int, *stds: float) -> Spread:
@@ -24,13 +24,12 @@ def start(clips: int, objects: int) -> Motion:
     return Motion(
         torch.randn(clips, 1, objects, 2, generator=generator),
         0.1 * torch.randn(clips, 1, objects, 2, generator=generator),
-        torch.zeros(clips, 1, objects, 1),
     )
 
 
 def test_free_flight_spreads_as_a_kalman_filter_says():
     path = linearised(straight, start(2, 1), steps=6)
-    cov = spread(1, 0.3, 0.02, 1.0, 0.01, 0.05)(path.jacobians)
+    cov = spread(1, 0.3, 0.02, 0.01, 0.05)(path.jacobians)
     t = torch.arange(1.0, 7.0)
     noise = torch.tensor([0.01**2 * sum((n - s) ** 2 for s in range(1, n + 1)) for n in range(1, 7)])
     expected = 0.3**2 + (0.02 * t) ** 2 + noise + 0.05**2
@@ -39,16 +38,9 @@ def test_free_flight_spreads_as_a_kalman_filter_says():
 
 
 def test_a_path_that_gathers_makes_a_forecast_surer():
-    drag = lambda now: Motion(0.8 * now.place, now.velocity, now.spin)  # noqa: E731
-    cov = spread(1, 0.3, 1e-6, 1e-6, 1e-6, 1e-6)(linearised(drag, start(1, 1), steps=5).jacobians)
+    drag = lambda now: Motion(0.8 * now.place, now.velocity)  # noqa: E731
+    cov = spread(1, 0.3, 1e-6, 1e-6, 1e-6)(linearised(drag, start(1, 1), steps=5).jacobians)
     torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), 0.3 * 0.8 ** torch.arange(1.0, 6.0), rtol=1e-3, atol=0)
-
-
-def test_a_spin_that_is_not_known_spreads_the_paths_that_it_turns():
-    swerve = lambda now: Motion(now.place + now.velocity, now.velocity + now.spin, now.spin)  # noqa: E731
-    cov = spread(1, 1e-6, 1e-6, 0.01, 1e-6, 1e-6)(linearised(swerve, start(1, 1), steps=4).jacobians)
-    expected = 0.01 * torch.tensor([0.0, 1.0, 3.0, 6.0])
-    torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), expected, rtol=1e-3, atol=1e-4)
 
 
 def test_linearised_paths_are_the_laws_own():
@@ -66,7 +58,7 @@ def test_known_noise_is_found_again_to_a_tenth_and_nine_tenths_are_covered():
     off = 0.03 * torch.randn(clips, 1, 1, 2, generator=generator)
     t = torch.arange(1.0, steps + 1)[:, None, None]
     target = path.place + off * t + 0.05 * torch.randn(clips, steps, 1, 2, generator=generator)
-    made = spread(1, 0.01, 0.01, 0.001, 0.001, 0.01)
+    made = spread(1, 0.01, 0.01, 0.001, 0.01)
     made.fit(path, target, rounds=200)
     cov = made(path.jacobians)
     true = 0.05**2 + (0.03 * torch.arange(1.0, steps + 1)) ** 2
@@ -76,10 +68,10 @@ def test_known_noise_is_found_again_to_a_tenth_and_nine_tenths_are_covered():
 
 
 def test_lost_tracks_do_not_rule_the_fit():
-    path = Path(torch.zeros(100, 4, 1, 2), torch.eye(5).expand(100, 4, 5, 5))
+    path = Path(torch.zeros(100, 4, 1, 2), torch.eye(4).expand(100, 4, 4, 4))
     target = 0.02 * torch.randn(100, 4, 1, 2, generator=torch_generator(2))
     target[:3] += 1.0
-    made = spread(1, 0.01, 0.001, 0.001, 0.001, 0.01)
+    made = spread(1, 0.01, 0.001, 0.001, 0.01)
     made.fit(path, target, rounds=200)
     std = made(path.jacobians)[0, -1, 0, 0, 0].sqrt().item()
     assert std == pytest.approx(0.02, rel=0.15)
