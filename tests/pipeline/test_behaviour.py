@@ -54,7 +54,7 @@ def test_a_predictor_s_params_re_run_that_predictor_only(slower):
 
 def test_metrics_and_plots_of_two_commits_compare(slower):
     project, _ = slower
-    assert "dispnet" in project.run("dvc", "metrics", "diff", "HEAD~1")
+    assert "bowls_T_px" in project.run("dvc", "metrics", "diff", "HEAD~1")
     project.run("dvc", "plots", "diff", "HEAD~1", "HEAD")
     page = (project.root / "dvc_plots/index.html").read_text()
     assert "mean error in px" in page
