@@ -1,5 +1,6 @@
 """What the page asks of the server: the set, a clip, its frames, the tracker's answer; and the one thing it changes."""
 
+import mimetypes
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from typing import Any, TypeVar
@@ -52,6 +53,7 @@ class Change(BaseModel):
 
 def create_app(desk: Desk, address: str) -> Flask:
     """The application for `address` (`127.0.0.1:8765`); anything else it refuses to answer."""
+    mimetypes.add_type("text/javascript", ".js")  # browsers run nothing else; a registry on Windows may say otherwise
     app = Flask(__name__, static_folder="page", static_url_path="/page")
     app.config["MAX_CONTENT_LENGTH"] = LARGEST_BODY
     app.url_map.merge_slashes = False

@@ -9,6 +9,7 @@ OBJECTS = ("#e69f00", "#56b4e9", "#cc79a7", "#009e73", "#d55e00", "#0072b2")
 
 PREDICTORS = {
     "dispnet": PALETTE[0],
+    "dispnet_long": "#882255",
     "posnet": PALETTE[1],
     "probnet": PALETTE[2],
     "ifs": PALETTE[3],
@@ -21,7 +22,7 @@ PREDICTORS = {
 }
 TRACKERS = {
     "unsupervised": PALETTE[0],
-    "unsupervised_joint": PALETTE[5],
+    "unsupervised_unrefined": PALETTE[5],
     "lucas_kanade": PALETTE[1],
     "lab": PALETTE[2],
     "trackpy": PALETTE[3],

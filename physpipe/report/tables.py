@@ -34,23 +34,20 @@ def save_metrics(folder: Path, every: Sequence[Evidence], predictor: str) -> Non
 
 
 def summary(every: Sequence[Evidence], predictor: str) -> dict[str, Any]:
-    """Headline figures, `<data set>_<figure>` to a number or a truth value; what is not known is left out."""
+    """The few figures that tell one run from another; those that are not known are left out.
+
+    `locked`: in every data set the tracker found an object. And of each data set, as `<data set>_<figure>`: `track_px`,
+    the unsupervised tracker's mean error; `T_px` and `2T_px`, the error of `predictor`, trained on those tracks.
+    """
     figures = {f"{each.name}_{key}": value for each in every for key, value in _headlines(each, predictor)}
-    return {key: value for key, value in figures.items() if value is not None}
+    known = {key: value for key, value in figures.items() if value is not None}
+    return {"locked": all(each.locked for each in every), **known}
 
 
 def _headlines(evidence: Evidence, predictor: str) -> Iterator[tuple[str, Any]]:
-    yield "locked", evidence.locked
-    ours = evidence.trackers.get("unsupervised", {})
-    for key in ("mean_px", "median_px", "p99_px", "off_track", "swaps"):
-        yield f"unsupervised_{key}", ours.get(key)
-    for supervision, rows in evidence.predictors.items():
-        for name in dict.fromkeys((predictor, "persistence")):
-            for key in ("error_T_px", "error_2T_px"):
-                yield f"{name}_{supervision}_{key}", rows[name].get(key)
-    for key, value in calibration_row(evidence).items():
-        if key.startswith("ratio"):
-            yield f"calibration_{key}", value
+    yield "track_px", evidence.trackers.get("unsupervised", {}).get("mean_px")
+    for horizon in ("T", "2T"):
+        yield f"{horizon}_px", evidence.predictors["tracks"][predictor].get(f"error_{horizon}_px")
 
 
 def _long(parts: Sequence[pd.DataFrame], every: Sequence[Evidence], columns: list[str]) -> pd.DataFrame:

@@ -1,7 +1,9 @@
 """What the server answers to the page, and what it refuses to others."""
 
+import re
 import socket
 from http.client import HTTPConnection
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -26,6 +28,19 @@ def test_the_page_and_its_parts_come_from_here_alone(client):
     for part in ("annotator.css", "annotator.js"):
         assert f"page/{part}" in text
         assert client.get(f"/page/{part}", headers=HOME).status_code == 200
+
+
+def test_the_page_loads_every_script_beside_it_and_each_is_served_as_one(client):
+    waiting, loaded = ["annotator.js"], set()
+    while waiting:
+        name = waiting.pop()
+        script = client.get(f"/page/{name}", headers=HOME)
+        assert (script.status_code, script.mimetype) == (200, "text/javascript")
+        assert "script-src 'self'" in script.headers["Content-Security-Policy"]
+        loaded.add(name)
+        imported = re.findall(r'^import .* from "(.+)";$', script.get_data(as_text=True), re.MULTILINE)
+        waiting += {each.removeprefix("./") for each in imported} - loaded
+    assert loaded == {path.name for path in Path(client.application.static_folder).glob("*.js")}
 
 
 def test_a_clip_is_told_with_its_size_times_and_state(client, annotate_files):

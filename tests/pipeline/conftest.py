@@ -65,6 +65,11 @@ class Project:
 
     root: Path
 
+    def copied(self, folder: Path) -> "Project":
+        """A copy of this checkout in `folder`, to change at will."""
+        shutil.copytree(self.root, folder / "checkout", symlinks=True)
+        return Project(folder / "checkout")
+
     def run(self, *words: str, succeeds: bool = True) -> str:
         """What the command prints; fails the test when its exit status is not the one expected."""
         done = subprocess.run(
@@ -125,5 +130,4 @@ def reproduced(tmp_path_factory) -> Project:
 @pytest.fixture
 def project(reproduced, tmp_path) -> Project:
     """A copy of the reproduced project to change at will."""
-    shutil.copytree(reproduced.root, tmp_path / "checkout", symlinks=True)
-    return Project(tmp_path / "checkout")
+    return reproduced.copied(tmp_path)

@@ -4,7 +4,10 @@ import json
 from pathlib import Path
 
 import pytest
+import yaml
 
+from physpipe.baselines.zoo import BASELINES as TRACKERS
+from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
 
 TEMPLATES = Path(__file__).parents[2] / "metrics" / "templates"
@@ -15,18 +18,28 @@ TEMPLATES = Path(__file__).parents[2] / "metrics" / "templates"
     [("error_by_horizon", "predictor", colours.PREDICTORS), ("tracker_errors", "tracker", colours.TRACKERS)],
 )
 def test_templates_colour_as_the_page_does(name, field, expected):
-    colour = json.loads((TEMPLATES / f"{name}.json").read_text())["spec"]["encoding"]["color"]
-    assert colour["field"] == field
-    assert dict(zip(colour["scale"]["domain"], colour["scale"]["range"], strict=True)) == expected
+    template = json.loads((TEMPLATES / f"{name}.json").read_text())
+    (lookup,) = template["transform"]
+    assert lookup["lookup"] == lookup["from"]["key"] == field
+    assert {row[field]: row["colour"] for row in lookup["from"]["data"]["values"]} == expected
+    assert lookup["default"] == colours.FALLBACK
+    curves, key = template["hconcat"]
+    for each in (curves["spec"], key):
+        assert each["encoding"]["color"] == {"field": "colour", "type": "nominal", "scale": None}
 
 
 @pytest.mark.parametrize("name", ["error_by_horizon", "tracker_errors", "learning"])
-def test_templates_have_dvcs_anchors_and_tell_revisions_apart(name):
+def test_templates_have_dvcs_anchors(name):
     text = (TEMPLATES / f"{name}.json").read_text()
     assert all(
         anchor in text for anchor in ("<DVC_METRIC_DATA>", "<DVC_METRIC_X>", "<DVC_METRIC_Y>", "<DVC_METRIC_TITLE>")
     )
-    assert json.loads(text)["spec"]["encoding"]["strokeDash"]["field"] == "rev"
+
+
+def test_every_model_of_the_project_has_a_colour():
+    params = yaml.safe_load((TEMPLATES.parents[1] / "params.yaml").read_text())
+    assert colours.PREDICTORS.keys() == {*BASELINES, *params["predictors"]}
+    assert colours.TRACKERS.keys() == {"unsupervised", "unsupervised_unrefined", *TRACKERS}
 
 
 @pytest.mark.parametrize("zoo", [colours.PREDICTORS, colours.TRACKERS])

@@ -30,7 +30,7 @@ def test_stage_writes_metrics_and_page(project, tmp_path, monkeypatch):
     assert {path.name for path in (tmp_path / "report").iterdir()} == {"index.html"}
     assert "Not measured yet" in (tmp_path / "report" / "index.html").read_text()
     assert {path.suffix for path in (tmp_path / "metrics").iterdir()} == {".json", ".csv"}
-    assert json.loads((tmp_path / "metrics" / "summary.json").read_text())["bowls_locked"] is True
+    assert json.loads((tmp_path / "metrics" / "summary.json").read_text())["locked"] is False
 
 
 def test_a_predictor_of_another_run_is_refused(project, tmp_path, monkeypatch):
