@@ -1,6 +1,7 @@
 """Stretches of clips to learn motion from: the first frames and positions seen, the later positions asked for."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -40,9 +41,10 @@ class WindowParams(Section):
 class TrackWindows:
     """Every stretch of `horizon` + 1 frames of one split whose positions are all known.
 
-    With `sees_end` the last frame of a stretch is seen too. With `steady` the camera's motion after the last seen frame
-    is taken off what is asked for. Raises InputError when no clip is so long, when the predictor sees so many frames
-    that none is left to forecast, when clips differ in size or number of objects, or when the tracks lack a clip.
+    With `sees_end` the last frame of a stretch is seen too. With `steady` the camera's motion is taken off, so that all
+    positions are as in the last frame that is seen with the ones before. Raises InputError when no clip is so long, when
+    the predictor sees so many frames that none is left to forecast, when clips differ in size or number of objects, or
+    when the tracks lack a clip.
     """
 
     def __init__(
@@ -97,7 +99,8 @@ class TrackWindows:
         xy = torch.from_numpy(np.stack([positions for _, positions in cut])).to(device())
         times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
         frames = as_input(np.stack([frames for frames, _ in cut]))
-        return Window(Seen(frames, xy[:, :T0], times[:, self.seen]), times[:, -asked:], xy[:, T0:])
+        seen = Seen(frames, xy[:, :T0], times[:, self.seen], steady=self.camera is not None)
+        return Window(seen, times[:, -asked:], xy[:, T0:])
 
     def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
         """`count` random windows, randomly mirrored (and turned, if square), with noise on the seen positions."""
@@ -106,7 +109,7 @@ class TrackWindows:
         flips[:, 2] &= self.height == self.width
         drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()])
         noise = torch.randn(drawn.seen.xy.shape, generator=generator).to(device()) * params.noise_px
-        return Window(Seen(drawn.seen.frames, drawn.seen.xy + noise, drawn.seen.times), drawn.asked_times, drawn.target)
+        return replace(drawn, seen=replace(drawn.seen, xy=drawn.seen.xy + noise))
 
     def pick(self, count: int, first_share: float, generator: torch.Generator) -> list[int]:
         """Random window numbers, a share of them from the clips' beginnings where those can be used."""
@@ -120,11 +123,11 @@ class TrackWindows:
     def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         clip, at = self.index[number]
         frames = self.frames[clip][[at + each for each in self.seen]]
-        asked, end = at + self.seen_frames, at + self.horizon + 1
-        path = self.xy[clip][at:end].copy()
-        if self.camera is not None:
-            path[self.seen_frames :] -= (self.camera[clip][asked:end] - self.camera[clip][asked - 1])[:, None]
-        return frames, path
+        stretch = slice(at, at + self.horizon + 1)
+        if self.camera is None:
+            return frames, self.xy[clip][stretch]
+        shift = self.camera[clip][stretch] - self.camera[clip][at + self.seen_frames - 1]
+        return frames, self.xy[clip][stretch] - shift[:, None]
 
     def _camera_paths(self) -> list[NDArray[np.float32]]:
         return [camera_path(as_input(np.stack([each]))[0]).cpu().numpy() for each in progress(self.frames, "camera")]

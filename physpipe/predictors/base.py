@@ -20,6 +20,8 @@ class Seen:
     """(B, T0, K, 2) pixels; where the objects are at the end is not given."""
     times: Tensor
     """(B, S) frames since the first one seen."""
+    steady: bool = False
+    """Whether the camera's motion is taken off `xy` already: all are as in the last of those frames."""
 
 
 @dataclass(frozen=True)

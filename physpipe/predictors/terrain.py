@@ -134,8 +134,9 @@ class Terrain(Predictor):
     def _look(self, seen: Seen) -> tuple[Scene, Tensor]:
         """The scene, and the seen places (B, T0, K, 2) without the camera's motion."""
         unit = FrameUnit.of(seen.frames)
-        places = unit.from_px(seen.xy - camera_shifts(seen.frames).unsqueeze(2))
+        xy = seen.xy if seen.steady else seen.xy - camera_shifts(seen.frames).unsqueeze(2)
         ground, whole = self.map(seen.frames, unit.aspect)
+        places = unit.from_px(xy)
         here = read(ground, places[:, -1:], unit.aspect)[:, 0]
         return Scene(ground, whole, self.describe(here).float(), unit.aspect), places
 

@@ -73,14 +73,17 @@ def test_seen_frames_show_the_objects_at_the_seen_positions(tmp_path):
             np.testing.assert_array_equal(lit(frames.permute(0, 2, 3, 1).numpy(), k), xy[:, k].numpy())
 
 
-def test_the_camera_s_motion_after_the_last_seen_frame_is_taken_off_what_is_asked_for(tmp_path):
+def test_steady_positions_are_those_in_the_last_seen_frame(tmp_path):
     found, table = made(tmp_path / "set")
     steady = TrackWindows(found, table, "train", 4, 8, steady=True)
     way = np.arange(LENGTH, dtype=np.float32)[:, None] * np.array([0.5, -0.25], np.float32)
     steady.camera = [way] * 2
     batch, xy = steady.batch([2]), tracks.by_clip(table)["c0"]
-    np.testing.assert_array_equal(batch.seen.xy[0], xy[2:6])
-    np.testing.assert_allclose(batch.target[0], xy[6:11] - (way[6:11] - way[5])[:, None], atol=1e-5)  # px
+    expected = xy[2:11] - (way[2:11] - way[5])[:, None]
+    np.testing.assert_allclose(torch.cat([batch.seen.xy[0], batch.target[0]]), expected, atol=1e-5)  # px
+    assert batch.seen.steady
+    assert steady.draw(2, drawing(), torch_generator(0)).seen.steady
+    assert not windows(tmp_path / "shaken").batch([2]).seen.steady
 
 
 def test_the_end_is_seen_by_a_frame_that_shows_the_last_target_and_by_no_position(tmp_path):

@@ -1,5 +1,7 @@
 """Facts about the forecaster that reads its law of motion from a map."""
 
+from dataclasses import replace
+
 import pytest
 import torch
 from springs import losses_by_learning
@@ -100,6 +102,9 @@ def test_a_shaken_camera_changes_no_forecast_of_the_scene_before_it():
     path = terrain()(Seen(film, xy, times[:, :4]), times[:, 4:]).mean
     assert (path - torch.tensor([24.0, 20.0])).abs().max() < 0.4  # px; the plain slope ends 1.6 px away
     assert (path - torch.tensor([24.0, 20.0]))[:, 0].abs().max() < 0.1
+    steadied = Seen(film, xy - shifts[None, :, None], times[:, :4], steady=True)
+    torch.testing.assert_close(terrain()(steadied, times[:, 4:]).mean, path, rtol=0, atol=0.4)
+    assert (terrain()(replace(steadied, xy=xy), times[:, 4:]).mean - path)[:, -1].abs().max() > 1  # taken as they are
 
 
 def shifted(picture: torch.Tensor, x: float, y: float) -> torch.Tensor:
