@@ -42,7 +42,7 @@ class TrackWindows:
     """Every stretch of `horizon` + 1 frames of one split whose positions are all known.
 
     With `sees_end` the last frame of a stretch is seen too. With `steady` the camera's motion is taken off, so that all
-    positions are as in the last frame that is seen with the ones before. Raises InputError when no clip is so long, when
+    positions are as in the last frame that is seen with those before. Raises InputError when no clip is so long, when
     the predictor sees so many frames that none is left to forecast, when clips differ in size or number of objects, or
     when the tracks lack a clip.
     """
