@@ -82,9 +82,18 @@ def learn_predictor(
         checkpoint,
         name,
     )
+    far = valid if kind.sees_end else _twice_as_far(valid, clips, table)
     with torch.no_grad():
-        predictor.calibrate(valid.batch(checked))
+        predictor.calibrate(far.batch(far.evenly(params.windows.valid_windows).tolist()))
     return predictor, curve
+
+
+def _twice_as_far(valid: TrackWindows, clips: ClipSet, table: pd.DataFrame) -> TrackWindows:
+    """The validation windows to 2 T, where clips are as long and tracked: how sure to be there has to be seen, too."""
+    try:
+        return TrackWindows(clips, table, "valid", valid.seen_frames, 2 * valid.horizon)
+    except InputError:
+        return valid
 
 
 def save_predictor(folder: Path, name: str, predictor: Predictor, params: LearnedParams, curve: pd.DataFrame) -> None:
@@ -116,4 +125,5 @@ def load_predictor(folder: Path, name: str, objects: int) -> Predictor:
         raise InputError(path, f"params of another model ({error})", again) from None
     predictor = kind(params, objects)
     checkpoints.load_into(predictor, content["state"], path)
-    return predictor
+    # As it learned: convolutions of another layout round otherwise
+    return predictor.to(memory_format=torch.channels_last)  # type: ignore[call-overload, no-any-return]

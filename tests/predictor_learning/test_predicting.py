@@ -20,6 +20,7 @@ from physpipe.predictor_learning.windows import WindowParams
 from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.probnet import ProbNetParams
 from physpipe.predictors.tensor_state import TensorStateParams
+from physpipe.predictors.terrain import TerrainParams
 
 HORIZON, END = 6, 9
 STATE = {"stem": 8, "channels": 8, "hidden": 8, "follow": True, "symmetric": True, "objects_alike": True}
@@ -28,7 +29,11 @@ MODELS = {
     "dispnet": TensorStateParams(**STATE),
     "probnet": ProbNetParams(**STATE, least_std_px=0.25, largest_std_px=40.0, distance_steps=3),
     "interpnet": InterpNetParams(**STATE, first_state=1.0),
-}
+    "terrain": TerrainParams(
+        channels=16, hidden=8, code=2, matched_steps=3, matched_weight=1, smoothing_frames=5, spread_rounds=4,
+        symmetric=True,
+    ),
+}  # fmt: skip
 FIT = FitParams(
     steps=6, batch_size=4, learning_rate=3e-3, final_rate=0.1, warmup_steps=1, weight_decay=1e-2, clip_norm=1.0,
     valid_every=2, patience=9, precision="bfloat16",
@@ -84,6 +89,16 @@ def test_clips_too_short_for_the_training_are_an_input_error(tmp_path, falling_b
     found, table = falling_balls()
     with pytest.raises(InputError, match=r"no train clip has 17 consecutive frames.*`predict.interpolation`"):
         learn(name, found, table, tmp_path / "c.pt", last_frame=16)
+
+
+@pytest.mark.parametrize(("last_frame", "judged_to"), [(4, 8), (8, 8)])
+def test_how_sure_to_be_is_judged_twice_as_far_ahead_where_clips_are_as_long(
+    tmp_path, monkeypatch, falling_balls, last_frame, judged_to
+):
+    told = []
+    monkeypatch.setattr(predictor_class("dispnet"), "calibrate", lambda self, held_out: told.append(held_out))
+    learn("dispnet", *falling_balls(), tmp_path / "c.pt", last_frame)
+    assert [window.asked_times[0, -1].item() for window in told] == [judged_to]
 
 
 def test_windows_with_a_lost_object_are_counted_and_never_learned_from(tmp_path, falling_balls, capsys):
