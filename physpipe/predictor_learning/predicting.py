@@ -126,4 +126,4 @@ def load_predictor(folder: Path, name: str, objects: int) -> Predictor:
     predictor = kind(params, objects)
     checkpoints.load_into(predictor, content["state"], path)
     # As it learned: convolutions of another layout round otherwise
-    return predictor.to(memory_format=torch.channels_last)  # type: ignore[call-overload, no-any-return]
+    return predictor.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
