@@ -84,7 +84,8 @@ def test_a_forecast_holds_a_finite_position_for_every_time_and_object(predictor)
 
 def test_a_clip_is_forecast_the_same_alone_or_in_company(predictor):
     window = random_window(type(predictor), frames=20)
-    alone = Seen(*(getattr(window.seen, part.name)[:1] for part in dataclasses.fields(Seen)))
+    seen = window.seen
+    alone = Seen(seen.frames[:1], seen.xy[:1], seen.times[:1])
     together = predictor(window.seen, window.asked_times).mean[:1]
     torch.testing.assert_close(predictor(alone, window.asked_times[:1]).mean, together, rtol=0, atol=1e-3)  # px
 
