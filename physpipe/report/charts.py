@@ -1,29 +1,33 @@
 """Curves of a data set as the page's script draws them: each line with its model, colour and points."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pandas as pd
 
 from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
+from physpipe.report.coverage import coverage, coverage_charts
 from physpipe.report.curves import error_distributions
+from physpipe.report.line import Chart, line
 from physpipe.report.run import SUPERVISIONS, Evidence
 
-DIGITS = 4
 LOSSES = {"train": "training loss", "valid": "validation loss"}
 STEEP = 30
 """A positive curve whose largest value is so many times its smallest gets a logarithmic axis."""
 TITLES = {"tracks": "trained on unsupervised tracks", "truth": "trained on true positions"}
-Chart = dict[str, Any]
 
 
-def charts(evidence: Evidence) -> dict[str, list[Chart]]:
-    """Name of a figure to its panels, for figures that there are data for; for JSON."""
+def charts(evidence: Evidence, coverage_percent: Sequence[float]) -> dict[str, list[Chart]]:
+    """Name of a figure to its panels, for figures that there are data for; for JSON.
+
+    `coverage_percent` is what the ellipses claim to hold whose coverage is shown.
+    """
     of_tracker = evidence.learning["model"].str.startswith("tracker")
     figures = {
         "tracker_errors": list(_tracker_errors(error_distributions(evidence.tracker_errors))),
         "horizons": list(_horizons(evidence.horizons, evidence.horizon)),
+        "coverage": list(coverage_charts(coverage(evidence, coverage_percent), evidence.horizon)),
         "tracker_learning": list(_learning(evidence.learning[of_tracker])),
         "predictor_learning": list(_learning(evidence.learning[~of_tracker])),
     }
@@ -36,7 +40,7 @@ def _tracker_errors(distributions: pd.DataFrame) -> Iterator[Chart]:
         return
     best_first = distributions.groupby("tracker")["share"].mean().sort_values(ascending=False, kind="stable").index
     lines = [
-        _line(
+        line(
             name,
             f"tracker:{name}",
             colours.of_tracker(name),
@@ -59,7 +63,7 @@ def _horizons(horizons: pd.DataFrame, horizon: int) -> Iterator[Chart]:
     for supervision in SUPERVISIONS:
         mine = horizons[horizons["supervision"] == supervision]
         lines = [
-            _line(
+            line(
                 str(name),
                 f"predictor:{name}",
                 colours.of_predictor(str(name)),
@@ -84,7 +88,7 @@ def _learning(learning: pd.DataFrame) -> Iterator[Chart]:
     styles = {model: _learner_style(model, number) for number, model in enumerate(learning["model"].unique())}
     for loss, mine in learning.groupby("loss", sort=False):
         lines = [
-            _line(str(model).removeprefix("tracker, "), points=curve[["step", "value"]], **styles[model])
+            line(str(model).removeprefix("tracker, "), points=curve[["step", "value"]], **styles[model])
             for model, curve in mine.groupby("model", sort=False)
         ]
         steep = (mine["value"] > 0).all() and mine["value"].max() > STEEP * mine["value"].min()
@@ -102,22 +106,3 @@ def _learner_style(model: str, number: int) -> dict[str, Any]:
         return {"model": "tracker:unsupervised", "colour": colours.PALETTE[number % len(colours.PALETTE)]}
     style = {"model": f"predictor:{name}", "colour": colours.of_predictor(name)}
     return {**style, "dashed": supervision == "truth"}
-
-
-def _line(
-    name: str, model: str, colour: str, points: pd.DataFrame, dashed: bool = False, wide: bool = False
-) -> dict[str, Any]:
-    x, y = (points[column].astype(float) for column in points)
-    return {
-        "name": name.replace("_", " "),
-        "model": model,
-        "colour": colours.for_page(colour),
-        "dashed": dashed,
-        "wide": wide,
-        "x": [_short(value) for value in x],
-        "y": [_short(value) for value in y],
-    }
-
-
-def _short(value: float) -> float | None:
-    return float(f"{value:.{DIGITS}g}") if pd.notna(value) else None

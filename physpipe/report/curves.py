@@ -1,6 +1,6 @@
 """Long tables for plotting: learning curves and distributions of tracker errors."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,19 @@ from physpipe.io import results
 POINTS_PER_CURVE = 100
 ERROR_GRID_PX = np.geomspace(0.05, 200, 41)
 """Where distributions are read off; 200 px is beyond the diagonal of a 128-px frame."""
+
+
+def curve_files(
+    tracker: Path, predictors: Path, supervisions: Iterable[str], learned: Sequence[str]
+) -> list[tuple[str, Path]]:
+    """Models and their learning curves, of all that has learned anything on a data set; two folders hold them."""
+    starts = [("tracker", tracker / part / "curve.csv") for part in ("first", "all")]
+    later = [
+        (f"{predictor}, {supervision}", predictors / supervision / predictor / "curve.csv")
+        for supervision in supervisions
+        for predictor in learned
+    ]
+    return [*starts, *later]
 
 
 def learning_curves(files: Iterable[tuple[str, Path]]) -> pd.DataFrame:

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -18,6 +18,7 @@ from physpipe.report import ablation, charts, colours
 from physpipe.report.embedding import embedded
 from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, headlines, known_columns
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
+from physpipe.report.plate import PlateParams, plate
 from physpipe.report.playing import FilmParams, excerpts, film, shown_clips
 from physpipe.report.run import Evidence, Row
 from physpipe.report.spans import doubtful_spans
@@ -44,6 +45,9 @@ class ReportParams(Section):
     """Number of doubtful spans of the track in the table."""
     span_frames: int = Field(ge=1)
     """Length of a doubtful span in frames."""
+    coverage_percent: list[Annotated[float, Field(gt=0, lt=100)]] = Field(min_length=1)
+    """What the ellipses claim to hold whose coverage is shown, ascending."""
+    plate: PlateParams
     film: FilmParams
 
 
@@ -90,7 +94,7 @@ def _data(every: Sequence[Evidence], sections: Sequence[dict[str, Any]], params:
     shown = {
         "trail": params.trail_frames,
         "colours": {"objects": colours.OBJECTS, "truth": colours.TRUTH, "forecast": colours.FORECAST},
-        "charts": {name: charts.charts(each) for name, each in zip(names, every, strict=True)},
+        "charts": {name: charts.charts(each, params.coverage_percent) for name, each in zip(names, every, strict=True)},
         "films": {section["name"]: section["film"] for section in sections},
     }
     return json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
@@ -100,7 +104,7 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
     """What the template says of one data set."""
     spans = doubtful_spans(evidence.track, evidence.truth, params.span_frames, params.spans_shown)
     chosen = excerpts(evidence, shown_clips(evidence, params.film.clips), spans, params.film.frames_at_most)
-    clips = evidence.clips
+    clips, drawn = evidence.clips, charts.charts(evidence, params.coverage_percent)
     return {
         "name": evidence.name,
         "simulated": evidence.simulated,
@@ -111,7 +115,7 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
         "objects": int(evidence.track["object"].max()) + 1 if len(evidence.track) else 0,
         "trackers": _ordered(tracker_rows(evidence)),
         "predictors": predictor_rows(evidence),
-        "figures": {name: len(panels) for name, panels in charts.charts(evidence).items()},
+        "figures": {name: len(panels) for name, panels in drawn.items()},
         "horizon": evidence.horizon,
         "calibration": calibration_row(evidence),
         "heat_maps": [embedded("image/png", each) for each in evidence.heat_maps],
@@ -119,6 +123,7 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
             stills(evidence, clip, params.frames_shown, params.upscale, params.trail_frames)
             for clip in shown_clips(evidence, params.clips_shown)
         ],
+        "plate": plate(evidence, params.plate, params.upscale),
         "film": film(evidence, chosen, spans, params.film),
         "probabilistic": "cov_xx" in evidence.forecast,
         "spans": spans.to_dict("records"),

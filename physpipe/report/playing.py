@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from physpipe.core.params import Section
-from physpipe.report.overlays import CHI2_90, marks_of
+from physpipe.report.brushes import CHI2_90
+from physpipe.report.overlays import marks_of
 from physpipe.report.run import Evidence
 from physpipe.report.spans import nearest_px
 from physpipe.report.strips import strip

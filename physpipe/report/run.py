@@ -13,7 +13,7 @@ from physpipe.core.horizon import BASELINES
 from physpipe.core.params import Section
 from physpipe.io import forecasts, results, tables, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.report.curves import learning_curves
+from physpipe.report.curves import curve_files, learning_curves
 
 SUPERVISIONS = ("tracks", "truth")
 Row = dict[str, Any]
@@ -37,6 +37,11 @@ class RunParams(Section):
     def predictors(self) -> list[str]:
         """All predictors, those that learn nothing first."""
         return list(dict.fromkeys([*BASELINES, *self.learned]))
+
+    @property
+    def drawn(self) -> list[str]:
+        """Those whose forecasts are drawn side by side, the learned ones first; standing still has no path."""
+        return list(dict.fromkeys([*self.learned, *(name for name in BASELINES if name != "persistence")]))
 
     def supervisions(self, dataset: str) -> list[str]:
         """Those that predictors are trained with on `dataset`."""
@@ -81,6 +86,8 @@ class Evidence:
     """Columns model, step, loss, value."""
     forecast: pd.DataFrame
     """Forecasts of the predictor that the pictures show: clip, object, frame, x, y and perhaps covariances."""
+    forecasts: dict[str, pd.DataFrame]
+    """Predictor to such a table, for all that are drawn side by side; all learned from unsupervised tracks."""
     horizon: int
     """T of those forecasts: the number of frames from the first seen one that predictors are trained for."""
     heat_maps: list[bytes]
@@ -103,7 +110,8 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
         raise InputError("report.predictor", f"`{shown}` does not run", f"use one of {known}, or add it to run.learned")
     tracker, scores = sources.trackers / name, sources.scores / name
     verdict = results.load_json(tracker / "all" / "verdict.json")
-    forecast = sources.forecasts / name / "tracks" / f"{shown}.parquet"
+    folder = sources.forecasts / name / "tracks"
+    forecast = folder / f"{shown}.parquet"
     heat_maps = [tracker / part / "heatmaps.png" for part in ("first", "all")]
     supervisions = run.supervisions(name)
     return Evidence(
@@ -117,8 +125,9 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
         calibration=results.load_json(scores / "predictors.json")["calibration"],
         tracker_errors=results.load_csv(scores / "tracker_errors.csv"),
         horizons=_horizons(scores / "horizons.csv", supervisions, run.predictors),
-        learning=learning_curves(_curve_files(name, run, sources)),
+        learning=learning_curves(curve_files(tracker, sources.predictors / name, supervisions, run.learned)),
         forecast=forecasts.load(forecast),
+        forecasts={each: forecasts.load(folder / f"{each}.parquet") for each in run.drawn},
         horizon=tables.metadata(forecast)["horizon"],
         heat_maps=[path.read_bytes() for path in heat_maps if path.is_file()],
         locked=bool(verdict["locked"]),
@@ -137,14 +146,3 @@ def _of_this_run(path: Path, supervisions: Sequence[str], names: Sequence[str]) 
 def _horizons(path: Path, supervisions: Sequence[str], names: Sequence[str]) -> pd.DataFrame:
     table = results.load_csv(path)
     return table[table["supervision"].isin(supervisions) & table["predictor"].isin(names)]
-
-
-def _curve_files(name: str, run: RunParams, sources: Sources) -> list[tuple[str, Path]]:
-    """Models and their learning curves, of all that has learned anything on this data set."""
-    trackers = [("tracker", sources.trackers / name / part / "curve.csv") for part in ("first", "all")]
-    predictors = [
-        (f"{predictor}, {supervision}", sources.predictors / name / supervision / predictor / "curve.csv")
-        for supervision in run.supervisions(name)
-        for predictor in run.learned
-    ]
-    return [*trackers, *predictors]

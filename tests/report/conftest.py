@@ -12,6 +12,7 @@ from physpipe.core.geometry import Geometry
 from physpipe.core.horizon import BASELINES
 from physpipe.io import clips, forecasts, results, tracks
 from physpipe.report.page import ReportParams, write_page
+from physpipe.report.plate import PlateParams
 from physpipe.report.playing import FilmParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather
 
@@ -117,10 +118,13 @@ def _data_set(sources: Sources, world: World, name: str, K: int, annotated: bool
     for number, predictor in enumerate(world.learned):
         path = sources.forecasts / name / "tracks" / f"{predictor}.parquet"
         _forecast(path, world, {clip: paths[clip] for clip in names[3:]}, number + 1.0)
+    for predictor in ("linear", "quadratic"):
+        path = sources.forecasts / name / "tracks" / f"{predictor}.parquet"
+        _forecast(path, world, {clip: paths[clip] for clip in names[3:]}, 4.0, sure=True)
 
 
-def _forecast(path: Path, world: World, paths: dict[str, np.ndarray], drift_px: float) -> None:
-    """A forecast that leaves the truth by `drift_px` a frame along y, with a spread that grows as it does."""
+def _forecast(path: Path, world: World, paths: dict[str, np.ndarray], drift_px: float, sure: bool = False) -> None:
+    """A forecast that leaves the truth along y by 0.3 `drift_px` a frame, unless `sure` with a growing spread."""
     parts = []
     for clip, xy in paths.items():
         T, K = xy.shape[:2]
@@ -135,7 +139,8 @@ def _forecast(path: Path, world: World, paths: dict[str, np.ndarray], drift_px: 
             "x": spots[:, 0],
             "y": spots[:, 1] + drift_px * ahead * 0.3,
         }
-        parts.append(pd.DataFrame({**columns, "cov_xx": spread, "cov_xy": 0.3 * spread, "cov_yy": spread}))
+        unsure = {} if sure else {"cov_xx": spread, "cov_xy": 0.3 * spread, "cov_yy": spread}
+        parts.append(pd.DataFrame({**columns, **unsure}))
     forecasts.save(path, pd.concat(parts), "made up", world.seen, world.horizon)
 
 
@@ -215,6 +220,8 @@ def build(root: Path, world: World) -> Project:
         trail_frames=8,
         spans_shown=3,
         span_frames=4,
+        coverage_percent=[50, 90],
+        plate=PlateParams(reach=2, spots=2, background_frames=9),
         film=film,
     )
     return Project(world, root, sources, run, shown, ABLATION)

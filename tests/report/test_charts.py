@@ -12,7 +12,7 @@ from physpipe.report.curves import error_distributions
 
 @pytest.fixture(scope="module")
 def drawn(bowls) -> dict:
-    return json.loads(json.dumps(charts(bowls), allow_nan=False))
+    return json.loads(json.dumps(charts(bowls, [50, 90]), allow_nan=False))
 
 
 def line(panel: dict, model: str) -> dict:
@@ -64,4 +64,4 @@ def test_every_kind_of_loss_gets_a_panel(drawn):
 
 
 def test_without_truth_only_learning_is_drawn(film):
-    assert set(charts(film)) == {"tracker_learning", "predictor_learning"}
+    assert set(charts(film, [50, 90])) == {"tracker_learning", "predictor_learning"}

@@ -79,7 +79,7 @@ def test_every_picture_decodes(page):
             kinds.append(kind)
             raw = base64.b64decode(content, validate=True)
             assert cv2.imdecode(np.frombuffer(raw, np.uint8), cv2.IMREAD_COLOR) is not None
-    assert kinds.count("data:image/webp") == 2 * 2 * 3  # data sets, clips, frames
+    assert kinds.count("data:image/webp") == 2 * 2 * 3 + 2 * 4  # data sets, clips, frames; panels of the plate
     assert kinds.count("data:image/png") == 2  # a heat map a data set
 
 

@@ -9,7 +9,8 @@ import pytest
 
 from physpipe.io import tracks
 from physpipe.report import playing
-from physpipe.report.overlays import CHI2_90, marks_of
+from physpipe.report.brushes import CHI2_90
+from physpipe.report.overlays import marks_of
 from physpipe.report.playing import Excerpt, FilmParams, ellipses, excerpts, shown_clips
 
 PARAMS = FilmParams(clips=2, frames_at_most=100, fps_at_most=30.0, quality=80)

@@ -101,7 +101,7 @@ def test_everything_on_the_page_loads(opened):
     page = opened()
     broken = page.evaluate("[...document.images].filter((each) => !(each.complete && each.naturalWidth > 0)).length")
     assert (page.locator("img").count() > 10, broken) == (True, 0)
-    expect(page.locator(".chart:visible")).to_have_count(1 + 2 + 2 + 2 + 2 + 2)  # bowls: all; film: learning alone
+    expect(page.locator(".chart:visible")).to_have_count(1 + 2 + 2 + 2 + 2 + 2 + 2)  # bowls: all; film: learning alone
     assert page.locator(".chart:visible path.line").count() > 20
     for name in ("bowls", "film"):
         assert picture(player(page, name)).std() > 5  # grey levels; nothing drawn is 0
@@ -234,6 +234,42 @@ def test_sets_and_models_are_filtered(opened):
     expect(page.locator(".choices")).to_be_hidden()
 
 
+def test_the_plate_and_what_is_claimed_follow_the_models(opened):
+    page = opened()
+    panels = page.locator("#plate [data-set=bowls] figure")
+    cover = page.locator("[data-chart='bowls/coverage']")
+    expect(panels.locator("visible=true")).to_have_count(4)
+    expect(cover.locator(".chart").first.locator(".plot path.line")).to_have_count(3)  # two predictors and the claim
+    page.locator(".models summary").click()
+    page.locator("[value='predictor:dispnet']").uncheck()
+    expect(panels.locator("visible=true")).to_have_count(3)
+    expect(cover.locator(".chart").first.locator(".plot path.line")).to_have_count(2)
+    page.locator("[value='predictor:probnet']").uncheck()
+    expect(cover).to_be_hidden()
+    page.get_by_label("show bowls").uncheck()
+    expect(page.locator("#plate [data-set=bowls]")).to_be_hidden()
+    expect(page.locator("#plate [data-set=film]")).to_be_visible()
+
+
+def test_coverage_is_read_out_in_percent(opened):
+    page = opened()
+    chart = page.locator("[data-chart='bowls/coverage'] .chart").first
+    chart.locator("svg[role=img]").focus()
+    press(page, "End", "ArrowLeft")
+    expect(chart.locator(".at")).to_have_text("90 % ellipse")
+    expect(chart.locator("li", has_text="as claimed").locator("output")).to_have_text("90.0 %")
+    expect(chart.locator("li", has_text="dispnet").locator("output")).to_have_text(re.compile(r"^\d+\.\d %$"))
+
+
+def test_the_plate_needs_no_script(browser, folder):
+    context = browser.new_context(java_script_enabled=False, offline=True)
+    page = context.new_page()
+    page.goto((folder / "index.html").as_uri())
+    expect(page.locator("#plate img")).to_have_count(2 * 4)  # data sets, predictors
+    expect(page.locator("#plate img").first).to_be_visible()
+    context.close()
+
+
 def test_tables_sort_both_ways_with_the_unknown_last(opened):
     page = opened()
     table = page.locator("#bowls table").nth(1)  # predictors from tracks
@@ -296,6 +332,7 @@ def test_paper_shows_stills_instead_of_players(opened):
     expect(player(page)).to_be_hidden()
     expect(page.locator(".filters")).to_be_hidden()
     expect(page.locator("#bowls .sheet img").first).to_be_visible()
+    expect(page.locator("#plate img").first).to_be_visible()
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert page.pdf().startswith(b"%PDF")
 

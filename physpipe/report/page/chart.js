@@ -18,10 +18,10 @@ class Chart {
     new ResizeObserver(() => this.plot.clientWidth && this.plot.clientWidth !== this.width && this.draw()).observe(this.plot);
   }
 
-  /** Keeps the lines of models that `shown` says yes to. */
+  /** Keeps the lines of models that `shown` says yes to, and what they are compared with, which has no model. */
   filter(shown) {
-    this.lines = this.panel.lines.filter((line) => shown(line.model));
-    this.element.hidden = this.lines.length === 0;
+    this.lines = this.panel.lines.filter((line) => line.model === "" || shown(line.model));
+    this.element.hidden = this.lines.every((line) => line.model === "");
     if (!this.element.hidden) this.draw();
   }
 

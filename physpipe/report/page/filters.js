@@ -37,7 +37,7 @@ class Filters {
 
   apply() {
     const [sets, models] = [this.chosen("set"), this.chosen("model")];
-    for (const element of all("[data-set], tr[data-model]")) {
+    for (const element of all("[data-set], [data-model]")) {
       const { set, model } = element.dataset;
       element.hidden = (set !== undefined && !sets.values.has(set)) || (model !== undefined && !models.values.has(model));
     }
