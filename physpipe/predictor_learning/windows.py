@@ -16,12 +16,9 @@ from physpipe.core.params import Section
 from physpipe.core.progress import progress
 from physpipe.io import tracks
 from physpipe.io.clips import TABLE, ClipSet, Split, common_size
+from physpipe.predictor_learning.mirrors import Symmetry, mirrored
 from physpipe.predictors.base import Seen, Window
 from physpipe.predictors.steadying import camera_path
-
-Symmetry = tuple[bool, bool, bool]
-"""Mirrored in x, mirrored in y, x and y swapped: the eight together are all turns and mirrors of a square."""
-
 
 KEYS = "`predict.horizon` (`predict.interpolation` for what is trained to it)"
 """What says how far a training reaches."""
@@ -131,21 +128,6 @@ class TrackWindows:
 
     def _camera_paths(self) -> list[NDArray[np.float32]]:
         return [camera_path(as_input(np.stack([each]))[0]).cpu().numpy() for each in progress(self.frames, "camera")]
-
-
-def mirrored(
-    frames: NDArray[np.uint8], xy: NDArray[np.float32], how: Symmetry
-) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Frames (T, H, W, 3) and positions (N, K, 2) px of the same scene, mirrored in x, in y, then x and y swapped."""
-    flip_x, flip_y, swap = how
-    height, width = frames.shape[1:3]
-    if flip_x:
-        frames, xy = frames[:, :, ::-1], np.stack([width - 1 - xy[..., 0], xy[..., 1]], axis=-1)
-    if flip_y:
-        frames, xy = frames[:, ::-1], np.stack([xy[..., 0], height - 1 - xy[..., 1]], axis=-1)
-    if swap:
-        frames, xy = frames.swapaxes(1, 2), xy[..., ::-1]
-    return frames, xy
 
 
 def as_input(frames: NDArray[np.uint8]) -> Tensor:

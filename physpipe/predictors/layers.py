@@ -120,8 +120,14 @@ def reader(inputs: int, hidden: int, outputs: int) -> nn.Sequential:
 
 def zero_reader(inputs: int, hidden: int, outputs: int, activation: Callable[[], nn.Module] = nn.ReLU) -> nn.Sequential:
     """Perceptron of two hidden layers that answers 0 before it has learned anything."""
-    last = nn.Linear(hidden, outputs)
-    nn.init.zeros_(last.weight)
-    nn.init.zeros_(last.bias)
+    last = zero_linear(hidden, outputs)
     layers = [nn.Linear(inputs, hidden), activation(), nn.Linear(hidden, hidden), activation()]
     return nn.Sequential(*layers, last)
+
+
+def zero_linear(inputs: int, outputs: int) -> nn.Linear:
+    """Layer that answers 0 before it has learned anything."""
+    layer = nn.Linear(inputs, outputs)
+    nn.init.zeros_(layer.weight)
+    nn.init.zeros_(layer.bias)
+    return layer

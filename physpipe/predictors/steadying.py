@@ -1,8 +1,12 @@
 """How a hand-held or shaken camera moved between the seen frames, told from what stands still in them (ours)."""
 
+from dataclasses import replace
+
 import torch
 from torch import Tensor
 from torch.nn import functional as F
+
+from physpipe.predictors.base import Seen
 
 ROUNDS = 3
 """Robust least-squares fits, each without what the last one could not explain: the objects that move."""
@@ -34,6 +38,13 @@ def camera_shifts(frames: Tensor) -> Tensor:
         left = (change - basis @ found).abs()
         weight = (left < 3 * left.mean(2, keepdim=True)).to(change)
     return -found[..., :2, 0]
+
+
+def steadied(seen: Seen) -> Seen:
+    """The same with all positions as in the last of the frames that they were seen in."""
+    if seen.steady:
+        return seen
+    return replace(seen, xy=seen.xy - camera_shifts(seen.frames).unsqueeze(2), steady=True)
 
 
 def camera_path(frames: Tensor) -> Tensor:

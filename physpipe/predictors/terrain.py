@@ -10,21 +10,18 @@ matched, place by place, to the changes of velocity along smoothed tracks; then 
 """
 
 import torch
-from pydantic import Field
+from pydantic import Field, field_validator
 from torch import Tensor, nn
 
 from physpipe.core.params import Section
 from physpipe.predictors.base import Forecast, Predictor, Seen, Window, distance_px
 from physpipe.predictors.kinematics import at, mended, past, smoothed
 from physpipe.predictors.layers import FrameUnit, zero_reader
-from physpipe.predictors.steadying import camera_shifts
+from physpipe.predictors.steadying import steadied
 from physpipe.predictors.symmetry import mean_over_symmetries
 from physpipe.predictors.terrain_law import Law, Motion, Scene, read
 from physpipe.predictors.terrain_map import TerrainMap
 from physpipe.predictors.uncertainty import Path, Spread, linearised
-
-TINY = 1e-10
-"""Keeps the gradient of a distance finite at 0; halves of the frame's longer side, squared."""
 
 
 class TerrainParams(Section):
@@ -46,6 +43,13 @@ class TerrainParams(Section):
     """Steps of fitting the covariance; 0 = forecasts have none."""
     symmetric: bool
     """Whether a forecast is the mean over all mirrors and turns of the frame; training sees one at a time."""
+
+    @field_validator("smoothing_frames")
+    @classmethod
+    def _odd(cls, frames: int) -> int:
+        if frames % 2 == 0:
+            raise ValueError(f"{frames} frames have none in the middle; give an odd number")
+        return frames
 
 
 class Terrain(Predictor):
@@ -72,6 +76,7 @@ class Terrain(Predictor):
         self.register_buffer("steps", torch.tensor(0))
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
+        seen = steadied(seen)  # once, and not for every mirror
         if self.training:
             return self._forecast(seen, asked_times)
         if self.params.symmetric:
@@ -85,10 +90,10 @@ class Terrain(Predictor):
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """How far off the law is along the tracks, in pixels a frame squared; then that of forecasts in pixels, too."""
-        scene, places = self._look(batch.seen)
+        scene, places = self._look(steadied(batch.seen))
         unit = FrameUnit.of(batch.seen.frames)
         track = torch.cat([places, unit.from_px(batch.target)], dim=1)
-        mismatch = unit.px * self._mismatch(scene, track)
+        mismatch = self._mismatch(scene, track, unit)
         parts = {"train_change_px": mismatch.item()}
         self.steps += 1
         if self.steps <= self.params.matched_steps:
@@ -98,16 +103,16 @@ class Terrain(Predictor):
         parts["train_last_px"] = distance[:, -1].mean().item()
         return distance.mean() + self.params.matched_weight * mismatch, parts
 
-    def _mismatch(self, scene: Scene, track: Tensor) -> Tensor:
-        """Mean distance of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame."""
+    def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit) -> Tensor:
+        """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame."""
         place, velocity, turn = smoothed(track, self.params.smoothing_frames)
         found = self.law(scene, Motion(place, velocity)).velocity - velocity
-        return ((found - turn).square().sum(-1) + TINY).sqrt().mean()
+        return distance_px(unit.px * found, unit.px * turn).mean()
 
     def calibrate(self, held_out: Window) -> None:
         """Fits the covariance, which is of no use before."""
         if self.params.spread_rounds:
-            path = self._path(held_out.seen, held_out.asked_times)
+            path = self._path(steadied(held_out.seen), held_out.asked_times)
             target = FrameUnit.of(held_out.seen.frames).from_px(held_out.target)
             self.spread.fit(path, target, self.params.spread_rounds)
 
@@ -132,11 +137,10 @@ class Terrain(Predictor):
         return linearised(lambda motion: self.law(scene, motion), now, int(_ahead(seen, asked_times).max()))
 
     def _look(self, seen: Seen) -> tuple[Scene, Tensor]:
-        """The scene, and the seen places (B, T0, K, 2) without the camera's motion."""
+        """The scene, and the places (B, T0, K, 2) of what is seen steadily."""
         unit = FrameUnit.of(seen.frames)
-        xy = seen.xy if seen.steady else seen.xy - camera_shifts(seen.frames).unsqueeze(2)
         ground, whole = self.map(seen.frames, unit.aspect)
-        places = unit.from_px(xy)
+        places = unit.from_px(seen.xy)
         here = read(ground, places[:, -1:], unit.aspect)[:, 0]
         return Scene(ground, whole, self.describe(here).float(), unit.aspect), places
 

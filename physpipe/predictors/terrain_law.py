@@ -6,7 +6,7 @@ import torch
 from torch import Tensor, nn
 
 from physpipe.predictors.kinematics import FASTEST, POWERS, SPEED, change
-from physpipe.predictors.layers import bilinear_weights, read_at, zero_reader
+from physpipe.predictors.layers import bilinear_weights, read_at, zero_linear, zero_reader
 
 NEAR = 0.2
 """A lively distance between two objects, in halves of the frame's longer side."""
@@ -43,9 +43,7 @@ class Law(nn.Module):
     def __init__(self, channels: int, whole: int, code: int, hidden: int, pairs: bool):
         super().__init__()
         self.ground = zero_reader(2 * channels + whole + code + 4, hidden, 2 * POWERS, nn.SiLU)
-        self.direct = nn.Linear(channels, 2 * POWERS)
-        nn.init.zeros_(self.direct.weight)
-        nn.init.zeros_(self.direct.bias)
+        self.direct = zero_linear(channels, 2 * POWERS)
         self.pair = zero_reader(10 + 2 * code, hidden, 2, nn.SiLU) if pairs else None
 
     def forward(self, scene: Scene, now: Motion) -> Motion:

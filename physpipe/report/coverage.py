@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from physpipe.metrics.predictors import squared_mahalanobis
 from physpipe.report import colours
 from physpipe.report.line import Chart, line
 from physpipe.report.pairs import missed
@@ -59,18 +60,13 @@ def _rows(evidence: Evidence, percent: Sequence[float]) -> Iterator[tuple[Any, .
         clips = missed(table, evidence.truth).values()
         for at, times in MULTIPLES.items():
             frame = times * evidence.horizon
-            squared = [squared_mahalanobis(each.at(frame), each.cov_at(frame)) for each in clips]
+            missed_by = [(each.at(frame), each.cov_at(frame)) for each in clips]
+            squared = [squared_mahalanobis(np.zeros_like(by_px), cov, by_px) for by_px, cov in missed_by]
             known = np.concatenate([*squared, np.empty(0)])
             known = known[np.isfinite(known)]
             for level, share in zip(percent, shares_inside(known, claimed), strict=True):
                 if len(known):
                     yield predictor, at, level, share, len(known)
-
-
-def squared_mahalanobis(by_px: NDArray[np.floating], cov: NDArray[np.floating]) -> NDArray[np.float64]:
-    """(K,) squared distance in standard deviations of misses (K, 2) px under covariances (K, 2, 2) px^2."""
-    column = by_px[..., None].astype(np.float64)
-    return (column.swapaxes(-1, -2) @ np.linalg.solve(cov.astype(np.float64), column))[..., 0, 0]
 
 
 def shares_inside(squared: NDArray[np.floating], percent: NDArray[np.floating]) -> NDArray[np.float64]:

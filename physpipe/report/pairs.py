@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from physpipe.io import forecasts, tracks
 from physpipe.io.forecasts import ClipForecast
+from physpipe.metrics.predictors import pairing
 
 Array = NDArray[np.floating]
 
@@ -54,7 +54,6 @@ def _of_clip(forecast: ClipForecast, whole: Array) -> Missed:
     """Objects are paired where the forecast begins, so that forecasting a swap later is an error."""
     truth = whole[forecast.first :][: len(forecast.mean)]
     mean = forecast.mean[: len(truth)]
-    apart = np.linalg.norm(truth[0][:, None] - mean[0], axis=-1)
-    theirs, ours = linear_sum_assignment(np.nan_to_num(apart))  # who is not visible fits anything
+    ours, theirs = pairing(mean[0], truth[0])
     cov = None if forecast.cov is None else forecast.cov[: len(truth), ours]
     return Missed(forecast.first, truth[:, theirs] - mean[:, ours], cov)

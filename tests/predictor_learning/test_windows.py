@@ -8,7 +8,8 @@ from physpipe.core.errors import InputError
 from physpipe.core.geometry import Geometry
 from physpipe.io import clips, tracks
 from physpipe.io.clips import Clip, ClipSet
-from physpipe.predictor_learning.windows import TrackWindows, WindowParams, mirrored
+from physpipe.predictor_learning.mirrors import mirrored
+from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 
 LENGTH, OBJECTS = 12, 2
 SYMMETRIES = [(x, y, swap) for x in (False, True) for y in (False, True) for swap in (False, True)]

@@ -90,6 +90,11 @@ def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():
     assert parts["train_last_px"] == pytest.approx(off[:, -1].mean().item(), abs=1e-2)
 
 
+def test_tracks_are_smoothed_over_an_odd_number_of_frames():
+    with pytest.raises(ValueError, match="8 frames have none in the middle"):
+        TerrainParams(**{**SMALL.model_dump(), "smoothing_frames": 8})
+
+
 def test_a_shaken_camera_changes_no_forecast_of_the_scene_before_it():
     """Film of a texture and a ball that stands still, both shaken alike: the ball is forecast to stay."""
     generator = torch_generator(3)

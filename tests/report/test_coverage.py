@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 from physpipe.io import forecasts, tracks
-from physpipe.metrics.predictors import covered
+from physpipe.metrics.predictors import covered, squared_mahalanobis
 from physpipe.report import colours
 from physpipe.report.charts import charts
-from physpipe.report.coverage import coverage, shares_inside, squared_mahalanobis
+from physpipe.report.coverage import coverage, shares_inside
 
 PERCENT = [10, 25, 50, 75, 90, 95]
 CLIPS, OBJECTS, SEEN, HORIZON = 60, 50, 4, 5
@@ -64,7 +64,8 @@ def test_only_predictors_with_covariances_are_told(shares):
 def test_shares_are_those_of_the_scores():
     rng = np.random.default_rng(1)
     missed, cov = rng.normal(0, 3, (200, 2)), np.broadcast_to(COV, (200, 2, 2))
-    ours = shares_inside(squared_mahalanobis(missed, cov), np.array(PERCENT, float))
+    squared = squared_mahalanobis(np.zeros((200, 2)), cov, missed)
+    ours = shares_inside(squared, np.array(PERCENT, float))
     theirs = [covered(np.zeros((1, 200, 2)), cov[None], missed[None], level / 100).mean() for level in PERCENT]
     np.testing.assert_allclose(ours, theirs)
 
