@@ -76,7 +76,7 @@ def write_page(
         colours=colours,
         style=Markup(_assets(STYLES, "css")),
         script=Markup(_assets(SCRIPTS, "js")),
-        data=Markup(_data(every, sections, params)),
+        data=Markup(_data(sections, params)),
     )
     with replacing_folder(folder) as temporary:
         (temporary / "index.html").write_text(html, encoding="utf-8")
@@ -88,13 +88,12 @@ def _assets(names: Sequence[str], kind: str) -> str:
     return "\n".join((folder / f"{name}.{kind}").read_text(encoding="utf-8") for name in names)
 
 
-def _data(every: Sequence[Evidence], sections: Sequence[dict[str, Any]], params: ReportParams) -> str:
+def _data(sections: Sequence[dict[str, Any]], params: ReportParams) -> str:
     """What the page's script reads, as JSON that cannot end the element it stands in."""
-    names = [section["name"] for section in sections]
     shown = {
         "trail": params.trail_frames,
         "colours": {"objects": colours.OBJECTS, "truth": colours.TRUTH, "forecast": colours.FORECAST},
-        "charts": {name: charts.charts(each, params.coverage_percent) for name, each in zip(names, every, strict=True)},
+        "charts": {section["name"]: section["charts"] for section in sections},
         "films": {section["name"]: section["film"] for section in sections},
     }
     return json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
@@ -104,7 +103,7 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
     """What the template says of one data set."""
     spans = doubtful_spans(evidence.track, evidence.truth, params.span_frames, params.spans_shown)
     chosen = excerpts(evidence, shown_clips(evidence, params.film.clips), spans, params.film.frames_at_most)
-    clips, drawn = evidence.clips, charts.charts(evidence, params.coverage_percent)
+    clips = evidence.clips
     return {
         "name": evidence.name,
         "simulated": evidence.simulated,
@@ -115,7 +114,7 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
         "objects": int(evidence.track["object"].max()) + 1 if len(evidence.track) else 0,
         "trackers": _ordered(tracker_rows(evidence)),
         "predictors": predictor_rows(evidence),
-        "figures": {name: len(panels) for name, panels in drawn.items()},
+        "charts": charts.charts(evidence, params.coverage_percent),
         "horizon": evidence.horizon,
         "calibration": calibration_row(evidence),
         "heat_maps": [embedded("image/png", each) for each in evidence.heat_maps],
