@@ -5,8 +5,6 @@ VENV := .venv
 BIN := $(VENV)/bin
 export DVC_NO_ANALYTICS := 1
 
-JOBS ?= 1
-
 .PHONY: setup repro test lint ablation results
 
 setup: $(VENV)/.ready
@@ -23,7 +21,7 @@ repro: setup
 	$(BIN)/python -m experiments.readme
 
 ablation results: setup
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m experiments.$@ --jobs $(JOBS)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m experiments.$@ $(if $(JOBS),--jobs $(JOBS))
 
 lint: setup
 	$(BIN)/ruff check .

@@ -2,8 +2,8 @@
 
     python benchmarks/speed.py bowls bowls2
 
-Frames/s of every tracker on the test clips, on one thread (reading them included, all objects, ours with its positions
-refined), seconds of the first detector's training, and of finding out what `dvc repro` has to do. Writes
+Frames/s of every tracker on one thread (reading the clips included, all objects, ours with its positions refined), of
+ours on all cores, seconds of the first detector's training, and of finding out what `dvc repro` has to do. Writes
 benchmarks/speed.json, which docs/results.md takes the rates from.
 """
 
@@ -26,14 +26,17 @@ from physpipe.baselines.template import TemplateParams
 from physpipe.baselines.zoo import BaselineParams, Settings, known_flows
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.parallel import worker_count
 from physpipe.core.params import read, read_value
 from physpipe.io import annotations, tracks
-from physpipe.io.clips import ClipSet
+from physpipe.io.clips import ClipSet, Split
 from physpipe.trackers import detectors
-from physpipe.trackers.refinement import refined
+from physpipe.trackers.tables import ObjectsParams, track_tables
 
 OUT = Path(__file__).with_name("speed.json")
 SCRATCH = Path(".scratch/benchmark")
+OURS = {"joint": "unsupervised_joint", "sequential": "unsupervised"}
+"""Recipe to the name of its tracker."""
 
 
 def seconds(work: Callable[[], object]) -> float:
@@ -63,27 +66,22 @@ def unsupervised(name: str) -> Callable[[], object]:
     """Ours, with the detectors that were learned."""
     clips = ClipSet(Path("data/clips") / name)
     nets = detectors.load(Path("data/tracker") / name / "all" / detectors.WEIGHTS)
-    params = read("tracker.tracking", detectors.TrackingParams)
-    tracker, refine = detectors.together(nets, params), params.refine
-
-    def track() -> None:
-        for each in clips.names("test"):
-            frames = clips.frames(each)
-            for found in tracker.track_all(frames):
-                if refine is not None:
-                    refined(frames, found.xy, refine)
-
-    return track
+    params, objects = read("tracker.tracking", detectors.TrackingParams), read(f"datasets.{name}.motion", ObjectsParams)
+    tracker = detectors.together(nets, params)
+    return lambda: track_tables(clips, tracker, objects, params.refine)
 
 
 def rates(name: str) -> dict[str, float]:
-    """Tracker to frames/s on the test clips of data set `name`."""
+    """Tracker to frames/s on one thread: ours on all clips of data set `name`, the others on the test clips."""
+    work = {each: baseline(name, each) for each in read("baselines", BaselineParams).names}
+    measured = {OURS[read_value("tracker.recipe")]: rate(unsupervised(name), name)}
+    return measured | {tracker: rate(each, name, "test") for tracker, each in work.items()}
+
+
+def rate(work: Callable[[], object], name: str, *splits: Split) -> float:
+    """Frames/s of work on the clips of some splits, or on all."""
     clips = ClipSet(Path("data/clips") / name)
-    frames = sum(len(clips.rows(each)) for each in clips.names("test"))
-    ours = "unsupervised_joint" if read_value("tracker.recipe") == "joint" else "unsupervised"
-    work = {ours: unsupervised(name)}
-    work |= {each: baseline(name, each) for each in read("baselines", BaselineParams).names}
-    return {tracker: round(frames / seconds(each), 1) for tracker, each in work.items()}
+    return round(sum(len(clips.rows(each)) for each in clips.names(*splits)) / seconds(work), 1)
 
 
 def processor() -> str:
@@ -96,20 +94,23 @@ def processor() -> str:
 
 def main(names: list[str]) -> None:
     """Measures the data sets `names`; those measured before on the same machine are kept."""
-    os.environ["PHYSPIPE_WORKERS"] = "1"
     prepare(read("compute", ComputeParams).model_copy(update={"threads": 1}))
     cv2.setNumThreads(1)
     machine = f"{processor()}, torch {torch.__version__}"
     kept = json.loads(OUT.read_text()) if OUT.is_file() else {}
-    new: dict[str, Any] = {"machine": machine, "rates": {}, "training_s": {}}
+    new: dict[str, Any] = {"machine": machine, "cores": worker_count(), "rates": {}, "all_cores": {}, "training_s": {}}
     table = kept if kept.get("machine") == machine else new
     table |= {"date": date.today().isoformat()}
     for name in names:
+        table["all_cores"][name] = rate(unsupervised(name), name)
+        os.environ["PHYSPIPE_WORKERS"] = "1"
         table["rates"][name] = rates(name)
+        del os.environ["PHYSPIPE_WORKERS"]
         training = stage("stages.train_tracker", f"data/clips/{name}", str(SCRATCH / name))
         table["training_s"][name] = round(seconds(training), 1)
         for what, value in table["rates"][name].items():
             print(f"| {name} | {what} | {value:.0f} frames/s |")
+        print(f"| {name} | ours on {table['cores']} cores | {table['all_cores'][name]:.0f} frames/s |")
         print(f"| {name} | training | {table['training_s'][name]:.0f} s |")
     table["status_s"] = round(seconds(lambda: subprocess.run(["dvc", "status", "--quiet"])), 1)
     print(f"| dvc status | {table['status_s']} s |\n{machine}")

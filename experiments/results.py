@@ -76,14 +76,14 @@ def main() -> None:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
         sys.exit("stopped; the same command goes on from here")
-    speed = _known(SPEED) or {"rates": {}, "machine": None}
+    speed = _known(SPEED) or {"rates": {}}
     trackers = kept(_known(FOLDER / "trackers.json"), tracker_runs.collect(followed, results, speed["rates"]))
     before, new = _known(FOLDER / "predictors.json"), forecast_runs.collect(forecast, results, seeds[0])
     predictors = {name: kept(before.get(name, {}), new.get(name, {})) for name in {**new, **before}}
     _save("trackers", trackers)
     _save("predictors", predictors)
     unrun = absent | {name: "not run yet" for name in names if name not in trackers}
-    PAGE.write_text("\n".join([tables.page(trackers, unrun, speed["machine"]), forecast_tables.page(predictors, grid)]))
+    PAGE.write_text("\n".join([tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid)]))
     for experiment, reason in failed.items():
         print(f"failed {experiment.label}: {reason}", file=sys.stderr)
     sys.exit(bool(failed))

@@ -48,11 +48,15 @@ shows, so they have no choice of an object and no offset from its middle to find
 """
 
 
-def page(table: Mapping[str, Mapping[str, Row]], unrun: Mapping[str, str], speed_machine: str | None) -> str:
-    """The whole page: a section a data set, then those that have no results with the reason."""
+def page(table: Mapping[str, Mapping[str, Row]], unrun: Mapping[str, str], speed: Mapping[str, Any]) -> str:
+    """The whole page: a section a data set, then those that have no results with the reason.
+
+    `speed` is what benchmarks/speed.json holds.
+    """
     parts = [HEAD]
-    if speed_machine:
-        parts.append(f"Frames/s on one thread of {speed_machine}.\n")
+    if speed["rates"]:
+        ours = ", ".join(f"{rate:,.0f} (`{name}`)" for name, rate in speed["all_cores"].items())
+        parts.append(f"Frames/s on one thread of {speed['machine']}; ours on its {speed['cores']} cores: {ours}.\n")
     parts += [_section(name, rows) for name, rows in table.items()]
     if unrun:
         parts.append("## Not run\n\n" + "".join(f"- `{name}`: {reason}\n" for name, reason in unrun.items()))

@@ -1,16 +1,18 @@
 """THE track table of a data set, by the learned tracker: before and after refinement."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from statistics import multimode
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
+import torch
 from numpy.typing import NDArray
 from pydantic import Field
 
+from physpipe.core.parallel import in_parallel, worker_count
 from physpipe.core.params import Section
-from physpipe.core.progress import progress
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers.base import Trajectory
@@ -18,6 +20,8 @@ from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.look import RefineParams
 from physpipe.trackers.refinement import refined
 from physpipe.trackers.sequential import SequentialTracker
+
+Result = TypeVar("Result")
 
 
 class ObjectsParams(Section):
@@ -45,18 +49,26 @@ def track_tables(
 
     Object k is the same through a clip, and as far as colours tell it looks the same in all clips.
     """
-    every = {name: tracker.track_all(clips.frames(name)) for name in progress(clips.names(), "tracking clips")}
+    every = _of_every_clip(clips, lambda name: tracker.track_all(clips.frames(name)), "tracking clips")
     count = objects.objects or multimode(max(1, sum(not each.still for each in found)) for found in every.values())[0]
     before = {name: _first(each, count, len(clips.times_s(name))) for name, each in every.items()}
     if isinstance(tracker, PeakTracker) and count > 1:
         before = _by_colour(clips, before)
     after = before
     if refine is not None:
-        after = {
-            name: each._replace(xy=_refined(clips.frames(name), each.xy, refine))
-            for name, each in progress(before.items(), "refining tracks")
-        }
+        after = _of_every_clip(
+            clips, lambda name: _refined(clips.frames(name), before[name], refine), "refining tracks"
+        )
     return _table(clips, after), _table(clips, before)
+
+
+def _of_every_clip(clips: ClipSet, work: Callable[[str], Result], what: str) -> dict[str, Result]:
+    """Clip to `work(clip)`, a thread a clip: Torch and OpenCV run side by side in threads, which share one net, and
+    each thread has its clip to itself, so that no number depends on how many there are.
+    """
+    names = clips.names()
+    with ThreadPoolExecutor(worker_count(), initializer=torch.set_num_threads, initargs=(1,)) as pool:
+        return dict(zip(names, in_parallel(work, names, what, pool), strict=True))
 
 
 def _table(clips: ClipSet, found: dict[str, Found]) -> pd.DataFrame:
@@ -75,9 +87,9 @@ def _first(found: Sequence[Trajectory], count: int, length: int) -> Found:
     return Found(xy, score, np.where(doubtful, tracks.AMBIGUOUS, "tracked"))
 
 
-def _refined(frames: NDArray[np.uint8], xy: NDArray[np.float32], params: RefineParams) -> NDArray[np.float32]:
+def _refined(frames: NDArray[np.uint8], found: Found, params: RefineParams) -> Found:
     held = np.array(frames)  # mapped from disk: read once for all objects
-    return np.stack([refined(held, xy[:, k], params) for k in range(xy.shape[1])], axis=1)
+    return found._replace(xy=np.stack([refined(held, each, params) for each in found.xy.swapaxes(0, 1)], axis=1))
 
 
 def _by_colour(clips: ClipSet, found: dict[str, Found]) -> dict[str, Found]:

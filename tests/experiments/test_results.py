@@ -11,6 +11,8 @@ from experiments.tracker_runs import collect, experiments
 
 DATASETS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["datasets"]
 
+SPEED = {"machine": "a machine", "cores": 2, "rates": {"bowls": {"lab": 9.0}}, "all_cores": {"bowls": 1234.0}}
+
 
 def result(ours: float, lab: float, **more: object) -> Result:
     rows = {
@@ -79,7 +81,7 @@ def test_rows_hold_mean_worst_seeds_commit_machine_and_time():
 
 
 def test_the_page_has_a_line_a_tracker_and_says_what_did_not_run():
-    text = page(table(result(0.5, 1.0), result(1.5, 1.0)), {"tray": "no film"}, "a machine")
+    text = page(table(result(0.5, 1.0), result(1.5, 1.0)), {"tray": "no film"}, SPEED)
     lines = text.splitlines()
     assert "| tracker | mean px | paper | 99 % px | lost | locked |" in lines
     assert "| `unsupervised` | 1.00 (1.50) | 4.10 | 2.00 (3.00) | – | yes |" in lines
@@ -87,7 +89,7 @@ def test_the_page_has_a_line_a_tracker_and_says_what_did_not_run():
     assert next(line for line in lines if line.startswith("| `")).startswith("| `unsupervised`")
     assert "HOTA" not in text
     assert lines[-1] == "- `tray`: no film"
-    assert "one thread of a machine" in text
+    assert "one thread of a machine; ours on its 2 cores: 1,234 (`bowls`)." in text
 
 
 def test_the_verdict_is_between_ours_and_tools_that_learn_nothing():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import worlds
+from pandas.testing import assert_frame_equal
 
 from physpipe.io import tracks
 from physpipe.trackers.base import Trajectory
@@ -47,6 +48,15 @@ def world(tmp_path):
         films.append(film)
         found[film[0].tobytes()] = each
     return worlds.save_clips(tmp_path / "clips", films), truth, Told(found)
+
+
+def test_tracks_do_not_depend_on_how_many_clips_are_tracked_at_once(world, monkeypatch):
+    clips, _, tracker = world
+    tables = []
+    for workers in ("1", "3"):
+        monkeypatch.setenv("PHYSPIPE_WORKERS", workers)
+        tables.append(track_tables(clips, tracker, ObjectsParams(objects=2), REFINE)[0])
+    assert_frame_equal(*tables)
 
 
 def test_an_object_has_the_same_number_in_all_clips_as_its_colour_tells(world):
