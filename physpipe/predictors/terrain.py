@@ -77,16 +77,11 @@ class Terrain(Predictor):
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
         seen = steadied(seen)  # once, and not for every mirror
-        if self.training:
-            return self._forecast(seen, asked_times)
-        if self.params.symmetric:
-            found = mean_over_symmetries(self._forecast, seen, asked_times)
-        else:
-            found = self._forecast(seen, asked_times)
-        if not self.params.spread_rounds:
-            return found
+        mean = self._shown(seen, asked_times)
+        if self.training or not self.params.spread_rounds:
+            return Forecast(mean)
         cov = self.spread(self._path(seen, asked_times).jacobians) * FrameUnit.of(seen.frames).px ** 2
-        return Forecast(found.mean, at(cov, _ahead(seen, asked_times)))
+        return Forecast(mean, at(cov, _ahead(seen, asked_times)))
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """How far off the law is along the tracks, in pixels a frame squared; then that of forecasts in pixels, too."""
@@ -112,9 +107,15 @@ class Terrain(Predictor):
     def calibrate(self, held_out: Window) -> None:
         """Fits the covariance, which is of no use before."""
         if self.params.spread_rounds:
-            path = self._path(steadied(held_out.seen), held_out.asked_times)
-            target = FrameUnit.of(held_out.seen.frames).from_px(held_out.target)
-            self.spread.fit(path, target, self.params.spread_rounds)
+            seen, times = steadied(held_out.seen), held_out.asked_times
+            missed = (held_out.target - self._shown(seen, times)) / FrameUnit.of(seen.frames).px
+            self.spread.fit(self._path(seen, times).jacobians, missed, self.params.spread_rounds)
+
+    def _shown(self, seen: Seen, asked_times: Tensor) -> Tensor:
+        """(B, N, K, 2) px, what a forecast shows of steady positions."""
+        if self.training or not self.params.symmetric:
+            return self._forecast(seen, asked_times).mean
+        return mean_over_symmetries(self._forecast, seen, asked_times).mean
 
     def _forecast(self, seen: Seen, asked_times: Tensor) -> Forecast:
         scene, places = self._look(seen)

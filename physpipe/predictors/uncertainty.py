@@ -1,8 +1,8 @@
 """How sure a forecast by a law of motion is: errors of the start, carried along the path by the law itself (ours).
 
 The law is linearised along the forecast path (as an extended Kalman filter does): what spreads paths makes a forecast
-less sure, what gathers them makes it surer, however far ahead. Four standard deviations, of the start's position and
-velocity, of each frame's change of velocity and of what is seen, are fitted to held-out stretches of film.
+less sure, what gathers them makes it surer, however far ahead. What is seen then also moves with the camera, which
+nobody can foresee: little in the next frame, and at most as far as it sways. All of that is fitted to held-out film.
 """
 
 import math
@@ -49,18 +49,19 @@ def linearised(step: Callable[[Motion], Motion], start: Motion, steps: int) -> P
 
 
 class Spread(nn.Module):
-    """Standard deviations behind a forecast's covariance; of no use before `fit`."""
+    """Six numbers behind a forecast's covariance; of no use before `fit`."""
 
     def __init__(self, objects: int):
         super().__init__()
         self.objects = objects
-        self.logs = nn.Parameter(torch.tensor([-6.0, -7.0, -8.0, -5.0]), requires_grad=False)
-        """Logarithms: position and velocity of the start, change of velocity a frame, what is seen."""
+        self.logs = nn.Parameter(torch.tensor([-6.0, -7.0, -8.0, -5.0, -4.0, 2.0]), requires_grad=False)
+        """Logarithms of standard deviations: position and velocity of the start, change of velocity a frame, position
+        in a frame, sway of the camera; and of the frames in which the camera sways."""
 
     def forward(self, jacobians: Tensor) -> Tensor:
         """(B, N, K, 2, 2) covariances along a path."""
         K = self.objects
-        place, velocity, change, seen = self.logs.exp().square()
+        place, velocity, change, seen, sway = self.logs[:5].exp().square()
         cov = torch.diag(torch.cat([place.expand(2 * K), velocity.expand(2 * K)])).expand(len(jacobians), -1, -1)
         noise = torch.diag(torch.cat([change.new_zeros(2 * K), change.expand(2 * K)]))
         along = []
@@ -69,23 +70,24 @@ class Spread(nn.Module):
             along.append(cov)
         blocks = torch.stack(along, dim=1)[..., : 2 * K, : 2 * K].unflatten(-2, (K, 2)).unflatten(-1, (K, 2))
         own = torch.diagonal(blocks, dim1=2, dim2=4).movedim(-1, 2)  # (B, N, K, 2, 2)
-        return own + seen * torch.eye(2, device=own.device)
+        ahead = torch.arange(1.0, len(along) + 1, device=own.device) / self.logs[5].exp()
+        around = seen + sway * (1 - torch.exp(-ahead.square()))
+        return own + around[:, None, None, None] * torch.eye(2, device=own.device)
 
-    def fit(self, path: Path, target: Tensor, rounds: int) -> None:
-        """To where the objects went, (B, N, K, 2): most likely, then scaled so that 90 % lie in the 90 % ellipse."""
-        missed = target - path.place
+    def fit(self, jacobians: Tensor, missed: Tensor, rounds: int) -> None:
+        """To how far forecasts missed, (B, N, K, 2): most likely, then scaled so that 90 % lie in the 90 % ellipse."""
         self.logs.requires_grad_(True)
         optimiser = torch.optim.Adam([self.logs], lr=0.1)
         with torch.enable_grad():
             for _ in range(rounds):
                 optimiser.zero_grad()
-                cov = self(path.jacobians)
+                cov = self(jacobians)
                 loss = (determinant(cov).log() + squared_mahalanobis(missed, cov).clamp(max=WILD)).mean()
                 loss.backward()
                 optimiser.step()
         self.logs.requires_grad_(False)
-        distances = squared_mahalanobis(missed, self(path.jacobians))
-        self.logs.add_(0.5 * (distances.flatten().quantile(0.9) / SURE).log())
+        distances = squared_mahalanobis(missed, self(jacobians))
+        self.logs[:5].add_(0.5 * (distances.flatten().quantile(0.9) / SURE).log())
 
 
 def _joined(motion: Motion) -> Tensor:

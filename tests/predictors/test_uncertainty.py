@@ -6,16 +6,16 @@ import torch
 from physpipe.core.determinism import torch_generator
 from physpipe.predictors.gaussian import squared_mahalanobis
 from physpipe.predictors.terrain_law import Motion
-from physpipe.predictors.uncertainty import Path, Spread, linearised
+from physpipe.predictors.uncertainty import Spread, linearised
 
 
 def straight(now: Motion) -> Motion:
     return Motion(now.place + now.velocity, now.velocity)
 
 
-def spread(objects: int, *stds: float) -> Spread:
+def spread(objects: int, *stds: float, sway: float = 1e-6, frames: float = 2.0) -> Spread:
     made = Spread(objects)
-    made.logs.copy_(torch.tensor(stds).log())
+    made.logs.copy_(torch.tensor([*stds, sway, frames]).log())
     return made
 
 
@@ -59,7 +59,7 @@ def test_known_noise_is_found_again_to_a_tenth_and_nine_tenths_are_covered():
     t = torch.arange(1.0, steps + 1)[:, None, None]
     target = path.place + off * t + 0.05 * torch.randn(clips, steps, 1, 2, generator=generator)
     made = spread(1, 0.01, 0.01, 0.001, 0.01)
-    made.fit(path, target, rounds=200)
+    made.fit(path.jacobians, target - path.place, rounds=200)
     cov = made(path.jacobians)
     true = 0.05**2 + (0.03 * torch.arange(1.0, steps + 1)) ** 2
     torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), true.sqrt(), rtol=0.1, atol=0)
@@ -67,11 +67,25 @@ def test_known_noise_is_found_again_to_a_tenth_and_nine_tenths_are_covered():
     assert inside.item() == pytest.approx(0.9, abs=0.005)
 
 
+def test_a_swaying_camera_is_found_again_to_a_tenth_and_covered_at_every_time():
+    clips, steps = 400, 24
+    path = linearised(straight, start(clips, 1), steps)
+    t = torch.arange(1.0, steps + 1)
+    true = (0.005**2 + 0.02**2 * (1 - torch.exp(-((t / 6) ** 2)))).sqrt()
+    missed = true[:, None, None] * torch.randn(clips, steps, 1, 2, generator=torch_generator(3))
+    made = Spread(1)
+    made.fit(path.jacobians, missed, rounds=400)
+    cov = made(path.jacobians)
+    torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), true, rtol=0.1, atol=0)
+    inside = (squared_mahalanobis(missed, cov) < 4.605).float().mean(dim=(0, 2))
+    assert (inside - 0.9).abs().max() < 0.06  # four standard errors of 400 clips
+
+
 def test_lost_tracks_do_not_rule_the_fit():
-    path = Path(torch.zeros(100, 4, 1, 2), torch.eye(4).expand(100, 4, 4, 4))
-    target = 0.02 * torch.randn(100, 4, 1, 2, generator=torch_generator(2))
-    target[:3] += 1.0
+    jacobians = torch.eye(4).expand(100, 4, 4, 4)
+    missed = 0.02 * torch.randn(100, 4, 1, 2, generator=torch_generator(2))
+    missed[:3] += 1.0
     made = spread(1, 0.01, 0.001, 0.001, 0.01)
-    made.fit(path, target, rounds=200)
-    std = made(path.jacobians)[0, -1, 0, 0, 0].sqrt().item()
+    made.fit(jacobians, missed, rounds=200)
+    std = made(jacobians)[0, -1, 0, 0, 0].sqrt().item()
     assert std == pytest.approx(0.02, rel=0.15)
