@@ -8,6 +8,8 @@ from physpipe.core.horizon import BASELINES, PredictParams
 from physpipe.core.params import read, read_value
 from physpipe.io import forecasts, results, tracks
 from physpipe.io.clips import ClipSet
+from physpipe.scenes.presets import PresetsParams, SimulateParams
+from physpipe.scoring.energy_drift import Replay, replays
 from physpipe.scoring.predictors import EvaluatePredictorsParams, score_predictors
 
 
@@ -22,11 +24,17 @@ def main(name: str, clips: Path, truth: Path, forecast: Path, out: Path) -> None
         each: {predictor: forecasts.load(forecast / each / f"{predictor}.parquet") for predictor in predictors}
         for each in supervisions
     }
-    exact = name in read_value("run.simulated")
     film, annotated = ClipSet(clips), tracks.load(truth)
-    figures, horizons = score_predictors(film, annotated, tables, predict.horizon, params, ball, exact)
+    simulated = _rolled_again(name, film) if name in read_value("run.simulated") else None
+    figures, horizons = score_predictors(film, annotated, tables, predict.horizon, params, ball, simulated)
     results.save_json(out, figures)
     results.save_csv(out.parent / "horizons.csv", horizons)
+
+
+def _rolled_again(name: str, film: ClipSet) -> dict[str, Replay]:
+    section = f"datasets.{name}.simulate"
+    world = read(section, SimulateParams).world(read("presets", PresetsParams), section)
+    return replays(world, name, film, film.names("test"))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from physpipe.core import params
 from physpipe.scenes.presets import PresetsParams, SimulateParams
-from physpipe.scenes.worlds import WorldParams
+from physpipe.scenes.world_params import WorldParams
 
 PARAMS = Path(__file__).parents[1] / "params.yaml"
 

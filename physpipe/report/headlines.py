@@ -33,6 +33,8 @@ PREDICTOR_COLUMNS = {
     "nll_nats": "NLL at T, nats",
     "nll_bits": "NLL at T, bits (the paper's “perplexity”)",
     "coverage_90": "90 % coverage",
+    "energy_off_T": "energy off at T",
+    "energy_off_2T": "energy off at 2T",
 }
 HORIZONS = {"error_T_px": "T", "error_2T_px": "2T"}
 SUPERVISION_WORDS = {"tracks": "unsupervised tracks", "truth": "true positions"}

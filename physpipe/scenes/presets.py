@@ -11,7 +11,7 @@ from physpipe.scenes.film import CameraParams
 from physpipe.scenes.look import LookParams
 from physpipe.scenes.physics import PhysicsParams
 from physpipe.scenes.terrains import AnyTerrainParams
-from physpipe.scenes.worlds import BallsParams, WorldParams
+from physpipe.scenes.world_params import BallsParams, WorldParams
 
 Preset = TypeVar("Preset")
 

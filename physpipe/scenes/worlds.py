@@ -4,83 +4,22 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
 
 from physpipe.core.errors import InputError
 from physpipe.core.parallel import in_parallel
-from physpipe.core.params import Section
 from physpipe.io.recordings import Recording
-from physpipe.scenes.balls import Ball, Rgb
-from physpipe.scenes.film import Camera, CameraParams, encode
-from physpipe.scenes.height_field import HeightsParams
-from physpipe.scenes.look import LookParams
-from physpipe.scenes.physics import LeftTerrainError, PhysicsParams, Start, Trajectory, roll
+from physpipe.scenes.balls import Ball
+from physpipe.scenes.film import Camera, encode
+from physpipe.scenes.physics import LeftTerrainError, Start, Trajectory, roll
 from physpipe.scenes.render import Scene
 from physpipe.scenes.terrain import Floats, Terrain, Wall
-from physpipe.scenes.terrains import AnyTerrainParams, draw_at_random
+from physpipe.scenes.terrains import draw_at_random
+from physpipe.scenes.world_params import BallsParams, WorldParams
 
+PREFIX = "clip_"
 TRIES = 200  # worlds drawn for one clip before the params are called impossible
-
-
-class BallsParams(Section):
-    """How many balls, what they are, and how each is let go."""
-
-    count: int = Field(ge=1)
-    """Balls in every clip, numbered from 0."""
-    colours: Literal["listed", "different", "same"]
-    """`listed`: ball i has the palette's colour i; `different`: colours drawn for each clip, no two alike; `same`: one
-    colour drawn for each clip."""
-    radius_m: tuple[float, float]
-    """Range of the radii, each drawn for each ball and clip, in metres."""
-    start_level: tuple[float, float]
-    """Range of the distance from the middle at the start, in parts of the distance to the border."""
-    start_speed_m_s: tuple[float, float]
-    """Range of the speed at the start, in metres per second."""
-    heading_spread_deg: float = Field(ge=0, le=180)
-    """Largest angle between a ball's first heading and the way to the middle; 180 is any direction."""
-
-    @model_validator(mode="after")
-    def _radii_are_positive_and_ordered(self) -> "BallsParams":
-        if not 0 < self.radius_m[0] <= self.radius_m[1]:
-            raise ValueError(f"{list(self.radius_m)} is no range of positive radii")
-        return self
-
-
-class WorldParams(Section):
-    """A simulated data set."""
-
-    clips: int = Field(ge=1)
-    """Number of recordings."""
-    still_frames: tuple[int, int]
-    """Range of the number of source frames during which the balls are held before they are let go."""
-    moving_frames: int = Field(ge=2)
-    """Source frames from the release on."""
-    terrain: AnyTerrainParams
-    balls: BallsParams
-    palette: list[Rgb] = Field(min_length=1)
-    """Colours of balls, 0 to 255."""
-    physics: PhysicsParams
-    look: LookParams
-    camera: CameraParams
-
-    @model_validator(mode="after")
-    def _palette_suffices(self) -> "WorldParams":
-        if self.balls.colours != "same" and self.balls.count > len(self.palette):
-            raise ValueError(
-                f"{self.balls.count} balls of {self.balls.colours} colours, {len(self.palette)} in palette"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _no_ball_is_larger_than_the_tightest_bend(self) -> "WorldParams":
-        if isinstance(self.terrain, HeightsParams) and self.balls.radius_m[1] >= self.terrain.tightest_m:
-            raise ValueError(
-                f"balls of {self.balls.radius_m[1]} m on a terrain that bends by {self.terrain.tightest_m} m"
-            )
-        return self
 
 
 @dataclass(frozen=True)
@@ -105,6 +44,17 @@ class Chances:
         return cls(*clip.spawn(3), *every.spawn(2))
 
 
+@dataclass(frozen=True)
+class World:
+    """What one clip films."""
+
+    terrain: Terrain
+    balls: list[Ball]
+    xyz_m: Floats
+    """(F, K, 3) centres in every source frame, z up."""
+    camera: Camera
+
+
 def simulate(params: WorldParams, name: str) -> Iterator[Recording]:
     """The recordings of the data set `name`, in order; a clip depends on nothing but params, name and its number."""
     yield from in_parallel(partial(record, params, name), range(params.clips), f"simulate {name}")
@@ -113,15 +63,25 @@ def simulate(params: WorldParams, name: str) -> Iterator[Recording]:
 def record(params: WorldParams, name: str, number: int) -> Recording:
     """One filmed clip and the exact centres of its balls in source pixels."""
     chances = Chances.of(name, number)
+    world = draw_world(params, chances)
+    scene = Scene(params.look, world.terrain, world.camera, chances.film, surface_rng(params, chances))
+    xy = world.camera.project(world.xyz_m)
+    frames = world.camera.expose(scene.film(world.xyz_m, xy, world.balls))
+    return Recording(f"{PREFIX}{number:04d}.mp4", encode(frames, params.camera), xy)
+
+
+def number_of(source: str) -> int:
+    """The number of the clip that the recording `source` is of."""
+    return int(source.removeprefix(PREFIX).removesuffix(".mp4"))
+
+
+def draw_world(params: WorldParams, chances: Chances) -> World:
+    """What a clip films, without filming it."""
     balls = draw_balls(params, chances.balls)
     terrain, trajectory = _roll_inside(params, balls, chances)
     still = int(chances.film.integers(*params.still_frames, endpoint=True))
     xyz = np.concatenate([np.repeat(trajectory.xyz_m[:1], still, axis=0), trajectory.xyz_m])
-    camera = Camera(params.camera, len(xyz), chances.film)
-    scene = Scene(params.look, terrain, camera, chances.film, surface_rng(params, chances))
-    xy = camera.project(xyz)
-    frames = camera.expose(scene.film(xyz, xy, balls))
-    return Recording(f"clip_{number:04d}.mp4", encode(frames, params.camera), xy)
+    return World(terrain, balls, xyz, Camera(params.camera, len(xyz), chances.film))
 
 
 def track(params: WorldParams, name: str, number: int) -> Trajectory:

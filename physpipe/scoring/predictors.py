@@ -11,6 +11,7 @@ from physpipe.core.params import Section
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.metrics import predictors as metrics
+from physpipe.scoring.energy_drift import Replay, energy_figures
 from physpipe.scoring.forecast_errors import forecast_errors
 from physpipe.scoring.forecast_figures import errors_at_multiples, forecast_figures, mean_of_known
 
@@ -34,18 +35,18 @@ def score_predictors(
     horizon: int,
     params: EvaluatePredictorsParams,
     ball: BallParams,
-    exact: bool,
+    simulated: Mapping[str, Replay] | None,
 ) -> tuple[dict[str, object], pd.DataFrame]:
     """Figures of each supervision's predictors (`tables[supervision][predictor]`), and the error of every frame.
 
     A figure is null when no annotated clip and no forecast reaches its frame, or when it takes a covariance or several
     objects that there are not. Without annotated clips all figures are null and `clips` is 0. The second result has
-    columns supervision, predictor, frame, error_px. `exact` truth, of a simulated set, also tells how hard the motion
-    is: `calibration`.
+    columns supervision, predictor, frame, error_px. The test clips of a `simulated` set, rolled again, also tell how
+    hard the motion is, `calibration`, and how well forecasts keep energy.
     """
     test = set(clips.names("test"))
     known = {clip: xy for clip, xy in tracks.by_clip(truth).items() if clip in test}
-    figures: dict[str, object] = {"calibration": calibration(truth, horizon) if exact else {}}
+    figures: dict[str, object] = {"calibration": {} if simulated is None else calibration(truth, horizon)}
     within_px = params.collision_radii * ball.ball_radius_px
     curves = []
     for supervision, predictors in tables.items():
@@ -53,6 +54,7 @@ def score_predictors(
         still = errors_at_multiples(errors["persistence"], horizon)
         figures[supervision] = {
             name: forecast_figures(each, still, horizon, ball.ball_radius_px, params.bootstrap_resamples)
+            | energy_figures(predictors[name], simulated or {}, horizon)
             for name, each in errors.items()
         }
         for name, each in errors.items():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from physpipe.scenes.worlds import WorldParams
+from physpipe.scenes.world_params import WorldParams
 
 
 @pytest.fixture

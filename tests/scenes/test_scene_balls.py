@@ -3,7 +3,7 @@ import pytest
 
 from physpipe.scenes.balls import Smear, draw_ball, draw_shadow
 from physpipe.scenes.look import Light
-from physpipe.scenes.worlds import WorldParams
+from physpipe.scenes.world_params import WorldParams
 
 OVERHEAD = Light(np.array([0.0, 0.0, 1.0]))
 WIDTH, HEIGHT, RADIUS = 90, 60, 6.0

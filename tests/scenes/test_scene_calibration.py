@@ -6,7 +6,8 @@ from simulated import PARAMS, of_the_project
 
 from physpipe.core import params
 from physpipe.scenes.film import Camera
-from physpipe.scenes.worlds import WorldParams, track
+from physpipe.scenes.world_params import WorldParams
+from physpipe.scenes.worlds import track
 
 PAPER_PX = {
     "bowls": {1: (20.1, 61.9), 2: (11.7, 93.1)},

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from physpipe.scenes.film import Camera, encode, smooth_drift
-from physpipe.scenes.worlds import WorldParams
+from physpipe.scenes.world_params import WorldParams
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -8,7 +8,7 @@ from physpipe.scenes.look import Light
 from physpipe.scenes.render import Scene, draw_terrain
 from physpipe.scenes.table import Table, TableParams
 from physpipe.scenes.texture import TextureParams
-from physpipe.scenes.worlds import WorldParams
+from physpipe.scenes.world_params import WorldParams
 
 TEXTURE = TextureParams(contrast=0.1, colour=0.2, widest_px=12, layers=3, fade=0.8, stretch=1.5)
 

@@ -14,7 +14,8 @@ from physpipe.scenes.film import Camera
 from physpipe.scenes.look import Light
 from physpipe.scenes.physics import DENSITY
 from physpipe.scenes.render import Scene, draw_terrain
-from physpipe.scenes.worlds import Chances, WorldParams, draw_balls, record, simulate, surface_rng, terrain_of, track
+from physpipe.scenes.world_params import WorldParams
+from physpipe.scenes.worlds import Chances, draw_balls, record, simulate, surface_rng, terrain_of, track
 from stages.simulate import main
 
 FIXED = ("poolr_sim", "bowlr_sim", "heightr_sim")

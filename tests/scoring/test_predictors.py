@@ -55,9 +55,9 @@ def still(truth):
     return np.repeat(truth[:1] - [2.0, 0.0], len(truth), axis=0)
 
 
-def scored(film, table, truth, horizon=T, objects: int = 1):
+def scored(film, table, truth, horizon=T, objects: int = 1, simulated=None):
     tables = {"tracks": {"persistence": forecast_table(still, objects=objects), "net": table}}
-    return score_predictors(film, truth, tables, horizon, PARAMS, BALL, exact=True)
+    return score_predictors(film, truth, tables, horizon, PARAMS, BALL, simulated)
 
 
 def test_the_forecaster_that_knows_scores_zero(film):
