@@ -32,8 +32,8 @@ def main(name: str, clips: Path, truth: Path, forecast: Path, out: Path) -> None
 
 
 def _rolled_again(name: str, film: ClipSet) -> dict[str, Replay]:
-    section = f"datasets.{name}.simulate"
-    world = read(section, SimulateParams).world(read("presets", PresetsParams), section)
+    chosen = read(f"datasets.{name}.simulate", SimulateParams)
+    world = chosen.world(read("presets", PresetsParams), f"datasets.{name}.simulate")
     return replays(world, name, film, film.names("test"))
 
 
