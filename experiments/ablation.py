@@ -2,8 +2,7 @@
 
     python -m experiments.ablation --set bowlr_sim --seeds 0,1,2
 
-Writes metrics/ablation.json and docs/results/ablation.png. Variants that have run are not run again. Each takes one
-thread, and as many run at once as there are cores: on two, that is 1.5 times as fast as two threads for one at a time.
+Writes metrics/ablation.json and docs/results/ablation.png. Variants that have run are not run again.
 """
 
 import argparse
@@ -71,7 +70,7 @@ def experiments(dataset: str, simulated: bool, seeds: Sequence[int]) -> dict[tup
     return {
         (part, row, seed): Experiment(
             f"ablation-{dataset}-{part}-{row.replace('+', '-').replace(' ', '-')}-seed{seed}",
-            (*tracker_only(dataset, seed, simulated), "baselines.names=[centre]", "compute.threads=1", *overrides),
+            (*tracker_only(dataset, seed, simulated), "baselines.names=[centre]", *overrides),
         )
         for part, rows in variants().items()
         for row, overrides in rows.items()

@@ -4,7 +4,7 @@ them."""
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from experiments.records import Experiment, Result, about
+from experiments.records import ONE_THREAD, Experiment, Result, about
 from experiments.spread import over_seeds
 from experiments.tracker_runs import Table
 
@@ -40,6 +40,7 @@ def experiments(
                 f"run.supervised=[{name if 'truth' in sources else ''}]",
                 f"report.predictor={predictor}",
                 f"compute.seed={seed}",
+                ONE_THREAD,
             ),
             "predictors",
         )

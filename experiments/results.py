@@ -1,6 +1,6 @@
 """Every tracker and every predictor on every data set that can run here: `make results`.
 
-    python -m experiments.results --seeds 0,1,2 --jobs 1
+    python -m experiments.results --seeds 0,1,2
 
 Writes trackers.json and predictors.json in docs/results, and docs/results.md. May be stopped and started again: what
 has run stays, and rows of an earlier commit stand until they are measured again. Predictors take the first seed.
@@ -8,6 +8,7 @@ has run stays, and rows of an earlier commit stand until they are measured again
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -57,7 +58,7 @@ def main() -> None:
     options.add_argument("--sets", help="some of the data sets only, a,b")
     options.add_argument("--recipes", default=",".join((*RECIPES, FORECASTS)), help="what runs, a,b")
     options.add_argument("--seeds", default="0,1,2")
-    options.add_argument("--jobs", type=int, default=1, help="experiments at once")
+    options.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="experiments at once")
     options.add_argument("--collect", action="store_true", help="run nothing, write what there is")
     chosen = options.parse_args()
     datasets = yaml.safe_load(Path("params.yaml").read_text())["datasets"]
