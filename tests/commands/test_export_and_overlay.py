@@ -25,7 +25,9 @@ def test_an_export_is_a_folder_that_says_what_it_is(run, balls, to, files):
     assert sorted(path.name for path in folder.iterdir()) == sorted(["about.json", *files])
     about = json.loads((folder / "about.json").read_text())
     assert (about["set"], about["pixels"], about["pixels_per_metre"]) == ("balls", "clip", 200)
-    assert about["frames_per_s"] == {"one_00": 50, "two_00": 50}
+    assert (about["frames_per_s"], about["clip_frames_per_s"]) == (50, 50)
+    written = [path for path in folder.rglob("*.*") if path.name != "about.json"]
+    assert about["files"] == sorted(path.relative_to(folder).as_posix() for path in written)
     assert about["tracks"] == "data/tracks/balls.parquet"
 
 
