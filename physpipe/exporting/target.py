@@ -68,5 +68,6 @@ def writable(path: Path) -> Iterator[None]:
         place, refused = path.absolute(), Path(error.filename or "").absolute()
         if not (error.filename and (refused in place.parents or refused.is_relative_to(place.parent))):
             raise
-        reason = f"cannot be written ({error.strerror})"
+        above = f": {error.filename}" if refused in place.parents else ""
+        reason = f"cannot be written ({error.strerror}{above})"
         raise InputError(path, reason, "give another place, or get the right to write there") from None
