@@ -182,6 +182,18 @@ def test_film_goes_again_where_its_section_cannot_be_written(folder: Path, monke
     assert Path("data/raw/rink/b.mp4").is_file()
 
 
+def test_large_film_is_copied_whole_and_its_progress_shown(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    film = bytes(range(256)) * (5 * 2**11) + b"end"  # two and a half MiB
+    (folder / "b.mp4").write_bytes(film)
+    (folder / "empty.mp4").write_bytes(b"")
+    add(monkeypatch, "rink", folder, "--no-probe")
+    assert Path("data/raw/rink/b.mp4").read_bytes() == film
+    assert Path("data/raw/rink/empty.mp4").read_bytes() == b""
+    assert "copy film (MiB): 100%" in capsys.readouterr().err
+
+
 def test_film_is_brought_under_dvc(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
