@@ -19,6 +19,7 @@ H, W, T = 48, 64, 54
 GEOMETRY = Geometry(30, 10, 3 * W, 3 * H, W, H)
 PARAMS = """\
 ground_truth: {candidates: 4, flat_lab: 2, smoothness_per_px2: 0.001, lost_score: 0.4, lost_switch: 1}
+run: {datasets: [rink, empty]}
 datasets:
   rink: {motion: {objects: 2}}
   bowls: {motion: {objects: 1}, simulate: {}}

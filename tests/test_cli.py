@@ -1,5 +1,6 @@
 """`physpipe add`: film in, and a params.yaml that ingest accepts."""
 
+import errno
 from pathlib import Path
 
 import pandas as pd
@@ -7,6 +8,7 @@ import pytest
 import yaml
 
 from physpipe import cli
+from physpipe.core.errors import InputError
 from physpipe.core.params import read
 from physpipe.ingest.dataset import IngestParams
 
@@ -35,7 +37,16 @@ datasets:
       allow_unreadable: false
     motion:
       objects: 1 # how many
+    evaluate:
+      ball_radius_px: 3.3
+    predict:
+      horizon: 14
+      interpolation: null
 """
+
+
+def no_dvc(*words: str) -> str:
+    raise InputError(words[0], "not found", "install it")
 
 
 @pytest.fixture
@@ -44,6 +55,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "project").mkdir()
     (tmp_path / "project" / "params.yaml").write_text(PARAMS)
     monkeypatch.chdir(tmp_path / "project")
+    monkeypatch.setattr("physpipe.commands.add.ask", no_dvc)
     folder = tmp_path / "film"
     (folder / "burst").mkdir(parents=True)
     for name in ("a.webm", "b.mp4", "LICENSE", "notes.csv", "burst/1.png", "burst/2.png", "burst/raw.txt"):
@@ -78,8 +90,8 @@ def test_film_tables_and_params_come_into_the_project(
     assert everything["datasets"]["rink"]["motion"] == {"objects": 2}
     assert everything["run"] == {"datasets": ["bowls"]}
     out = capsys.readouterr().out
-    assert "dvc add data/raw/rink" in out
-    assert 'dvc exp run -S "run.datasets=[rink]" -S "run.simulated=[]"' in out
+    assert "\n  dvc add data/raw/rink\n" in out
+    assert '\n  dvc exp run -S "run.datasets=[rink]" -S "run.simulated=[]" -S "run.supervised=[]"\n' in out
 
 
 def test_without_options_the_films_own_rate_and_square_are_used(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,7 +104,7 @@ def test_without_options_the_films_own_rate_and_square_are_used(folder: Path, mo
 def test_an_existing_section_is_kept_and_that_is_said(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    add(monkeypatch, "pendulum", folder, "--fps", 99)
+    add(monkeypatch, "pendulum", folder)
     assert Path("params.yaml").read_text() == PARAMS
     assert "kept as it was" in capsys.readouterr().out
 
@@ -102,8 +114,18 @@ def test_an_existing_section_is_kept_and_that_is_said(
     [
         (["rink", "absent"], "no such folder"),
         (["../rink", "film"], "not a name for a data set"),
-        (["rink", "film", "--clip-frames", "3"], "`clip_frames`: Input should be greater than or equal to 5"),
-        (["rink", "film", "--crop=-1,0,5,5"], "`crop.left`"),
+        (
+            ["rink", "film", "--clip-frames", "3"],
+            "`datasets.rink.ingest.clip_frames`: Input should be greater than or equal to 5",
+        ),
+        (["rink", "film", "--crop=-1,0,5,5"], "`datasets.rink.ingest.crop.left`"),
+        (
+            ["rink", "film", "--objects", "0"],
+            "`datasets.rink.motion.objects`: Input should be greater than or equal to 1",
+        ),
+        (["rink", "film", "--source-fps", "-5"], "`datasets.rink.ingest.source_fps`"),
+        (["pendulum", "film", "--objects", "2"], "without --objects. To mend: set `datasets.pendulum.motion.objects`"),
+        (["pendulum", "film", "--crop", "1,2,3,4", "--fps", "9"], "would be kept, without --fps, --crop"),
     ],
 )
 def test_a_refusal_is_one_line_and_changes_nothing(
@@ -115,6 +137,79 @@ def test_a_refusal_is_one_line_and_changes_nothing(
     assert said in str(caught.value)
     assert [path.name for path in Path().iterdir()] == ["params.yaml"]
     assert Path("params.yaml").read_text() == PARAMS
+
+
+def test_without_positions_errors_need_the_annotator(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a.ref.csv").unlink()
+    add(monkeypatch, "rink", folder, "--no-probe")
+    assert capsys.readouterr().out.endswith("To have errors measured, once it ran: physpipe annotate rink\n")
+
+
+def test_the_mend_of_a_section_that_is_unsound_is_no_option(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("params.yaml").write_text(PARAMS.replace("objects: 1", "objects: none"))
+    with pytest.raises(SystemExit, match=r"`datasets.pendulum.motion.objects`.*To mend: correct the section"):
+        add(monkeypatch, "pendulum", folder)
+
+
+@pytest.mark.parametrize("blocked", ["data", "data/raw", "data/annotations"])
+def test_a_place_that_is_no_folder_is_named_and_nothing_begun(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, blocked: str
+) -> None:
+    Path(blocked).parent.mkdir(exist_ok=True)
+    Path(blocked).write_text("no folder")
+    with pytest.raises(SystemExit, match=rf"^error: data/.*: cannot be written \(.*: {blocked}"):
+        add(monkeypatch, "rink", folder, "--no-probe")
+    assert Path("params.yaml").read_text() == PARAMS
+    assert not [path for path in Path().rglob("*") if "rink" in path.name]
+
+
+def test_film_goes_again_where_its_section_cannot_be_written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(self: Path, target: Path) -> Path:
+        if Path(target).name == "params.yaml":
+            raise PermissionError(errno.EACCES, "Permission denied", str(self))
+        return rename(self, target)
+
+    rename = Path.replace
+    with monkeypatch.context() as locked:
+        locked.setattr(Path, "replace", refused)
+        with pytest.raises(SystemExit, match=r"^error: params.yaml: cannot be written \(Permission denied\)"):
+            add(monkeypatch, "rink", folder, "--no-probe")
+    assert Path("params.yaml").read_text() == PARAMS
+    assert not [path for path in Path().rglob("*") if "rink" in path.name]
+    add(monkeypatch, "rink", folder, "--no-probe")  # nothing is in the way of the next try
+    assert Path("data/raw/rink/b.mp4").is_file()
+
+
+def test_large_film_is_copied_whole_and_its_progress_shown(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    film = bytes(range(256)) * (5 * 2**11) + b"end"  # two and a half MiB
+    (folder / "b.mp4").write_bytes(film)
+    (folder / "empty.mp4").write_bytes(b"")
+    add(monkeypatch, "rink", folder, "--no-probe")
+    assert Path("data/raw/rink/b.mp4").read_bytes() == film
+    assert Path("data/raw/rink/empty.mp4").read_bytes() == b""
+    assert "copy film (MiB): 100%" in capsys.readouterr().err
+
+
+def test_film_is_brought_under_dvc(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked: list[tuple[str, ...]] = []
+
+    def taken(*words: str) -> str:
+        assert read("datasets.rink.ingest", IngestParams).size == 128  # the section is there by then
+        asked.append(words)
+        return ""
+
+    monkeypatch.setattr("physpipe.commands.add.ask", taken)
+    add(monkeypatch, "rink", folder, "--no-probe")
+    assert asked == [("dvc", "add", "data/raw/rink")]
+    out = capsys.readouterr().out
+    assert "DVC keeps the film; data/raw/rink.dvc" in out
+    assert "dvc add" not in out
 
 
 def test_film_is_never_overwritten(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,7 +252,7 @@ def test_a_published_set_comes_with_its_split_and_its_annotations_stay_away_from
         assert (said / name).read_bytes() == (published / name).read_bytes()
     out = capsys.readouterr().out
     assert "Train, valid and test: data/raw/pool/splits.csv." in out
-    assert "put boxes into" not in out
+    assert "physpipe annotate" not in out
 
 
 def test_positions_beside_nested_recordings_go_by_their_paths(published: Path, monkeypatch: pytest.MonkeyPatch) -> None:

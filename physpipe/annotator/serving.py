@@ -33,7 +33,6 @@ def annotate(name: str, clips: Path, annotations: Path, port: int, show: bool) -
     if show:
         Thread(target=webbrowser.open, args=[url], daemon=True).start()  # some browsers hold up whoever opens them
     server.run()
-    print(f"\nNext: dvc repro, which works out the truth of {name} anew.")
 
 
 def open_desk(name: str, clips: Path, annotations: Path) -> Desk:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from physpipe.health import machine
 from physpipe.health.finding import Finding, lines
+from physpipe.health.wording import counted
 
 
 def run(words: Namespace) -> None:
@@ -15,7 +16,8 @@ def run(words: Namespace) -> None:
     for finding in _findings():
         counts[finding.level] += 1
         print("\n".join(lines(finding)), flush=True)
-    print(f"\n{counts['problem']} problems, {counts['warning']} warnings, {counts['runs']} kinds of stages would run")
+    kinds = counted(counts["runs"], "kind of stages", "kinds of stages")
+    print(f"\n{counted(counts['problem'], 'problem')}, {counted(counts['warning'], 'warning')}, {kinds} would run")
     if counts["problem"]:
         sys.exit(1)
 

@@ -2,6 +2,7 @@
 
 from argparse import Namespace
 
+from physpipe.commands.making import made
 from physpipe.commands.places import CLIPS, EXPORTS, TRACKS, known_set
 from physpipe.core.ball import BallParams
 from physpipe.core.params import read
@@ -9,6 +10,7 @@ from physpipe.exporting.formats import FORMATS
 from physpipe.exporting.located import located
 from physpipe.exporting.scale import pixels_per_metre
 from physpipe.exporting.target import exported
+from physpipe.health.wording import counted
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 
@@ -16,13 +18,13 @@ from physpipe.io.clips import ClipSet
 def run(words: Namespace) -> None:
     """Writes a folder with the tracks and `about.json`."""
     name = known_set(words.name)
-    path = words.table or TRACKS / f"{name}.parquet"
+    path = made(words.table or TRACKS / f"{name}.parquet", name)
     scale = words.pixels_per_metre or pixels_per_metre(name)
     radius_px = read(f"datasets.{name}.evaluate", BallParams).ball_radius_px
-    found = located(name, path, tracks.load(path), ClipSet(CLIPS / name), words.pixels, radius_px, scale)
+    found = located(name, path, tracks.load(path), ClipSet(made(CLIPS / name, name)), words.pixels, radius_px, scale)
     out = words.out or EXPORTS / name / words.to
     with exported(out, found.about(words.to, path)) as folder:
         FORMATS[words.to](folder, found)
-    clips, rows = found.table["clip"].nunique(), len(found.table)
+    clips, rows = counted(found.table["clip"].nunique(), "clip"), counted(len(found.table), "row")
     units = f", metres at {scale:g} px per metre" if scale else ""
-    print(f"{clips} clips, {rows} rows in {words.pixels} pixels{units}: {out}")
+    print(f"{clips}, {rows} in {words.pixels} pixels{units}: {out}")

@@ -3,9 +3,12 @@
 import re
 import shlex
 from argparse import Namespace
+from collections.abc import Iterator
+from itertools import chain, count
 from pathlib import Path
 
 from physpipe.commands import section
+from physpipe.commands.places import ANNOTATIONS, RAW
 from physpipe.core.params import PARAMS
 from physpipe.exporting.target import writable
 from physpipe.probing import sheet
@@ -25,11 +28,23 @@ def run(words: Namespace) -> None:
         sheet.save(preview, probed.found, [geometry(each, crop, like.size) for each in probed.found])
     print("\n".join(described(probed, like.size)))
     print(f"The likely crop and what moves: {preview}")
-    free = f"{name}_2" if section.exists(name) else name
+    folder = shlex.quote(str(words.folder))
+    if section.exists(name) and not _filmed(name):
+        print(f"\n`physpipe add {name} {folder}` gives this film to the section `datasets.{name}` that {PARAMS} has.")
+    free = next(each for each in _names(name) if not section.exists(each) and not _filmed(each))
     rate = f" --source-fps {words.source_fps:g}" if words.source_fps else ""
-    added = f"physpipe add {free} {shlex.quote(str(words.folder))}{rate}"
-    print(f"\nThe section for `datasets` in {PARAMS}, where `{added}` puts it:\n")
+    print(f"\nThe section for `datasets` in {PARAMS}, where `physpipe add {free} {folder}{rate}` puts it:\n")
     print(section.block(free, probed.advice.changes()))
+
+
+def _filmed(name: str) -> bool:
+    """Whether `add` would find something in its way."""
+    return any((place / name).exists() for place in (RAW, ANNOTATIONS))
+
+
+def _names(name: str) -> Iterator[str]:
+    """The name, then the same with a number."""
+    return chain([name], (f"{name}_{number}" for number in count(2)))
 
 
 def _name(folder: Path) -> str:

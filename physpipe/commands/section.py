@@ -1,13 +1,15 @@
 """The section of params.yaml that a new data set gets."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import yaml
 from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
-from physpipe.core.params import PARAMS, read
+from physpipe.core.params import PARAMS, Section, read
 from physpipe.exporting.scale import ScaleParams
+from physpipe.health.project import OF_A_SET
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import params_file
 
@@ -26,16 +28,25 @@ def exists(name: str) -> bool:
 
 
 def extended(text: str, name: str, changes: dict[str, Any]) -> str:
-    """params.yaml's text with the new section; raises InputError for values that ingest would refuse."""
+    """params.yaml's text with the new section; raises InputError for values that a stage or a command would refuse."""
     result = params_file.with_section(text, "datasets", TEMPLATE, name, changes)
-    try:
-        section = yaml.safe_load(result)["datasets"][name]
-        IngestParams.model_validate(section["ingest"])
-        ScaleParams.model_validate(section.get("scale") or {"pixels_per_metre": None})
-    except ValidationError as error:
-        faults = [f"`{'.'.join(map(str, each['loc']))}`: {each['msg']}" for each in error.errors()]
-        raise InputError(PARAMS, f"these values would be refused: {'; '.join(faults)}", "correct the options") from None
+    faults = list(_faults(f"datasets.{name}", yaml.safe_load(result)["datasets"][name]))
+    if faults:
+        mend = "correct the options" if changes else "correct the section"
+        raise InputError(PARAMS, f"these values would be refused: {'; '.join(faults)}", mend)
     return result
+
+
+def _faults(where: str, section: dict[str, Any]) -> Iterator[str]:
+    kinds: dict[str, type[Section]] = {**OF_A_SET, "scale": ScaleParams}
+    for part, kind in kinds.items():
+        if part == "scale" and part not in section:  # the one that may be left out
+            continue
+        try:
+            kind.model_validate(section.get(part))
+        except ValidationError as error:
+            for each in error.errors():
+                yield f"`{'.'.join(map(str, [where, part, *each['loc']]))}`: {each['msg']}"
 
 
 def block(name: str, changes: dict[str, Any]) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from physpipe.core.progress import progress
 from physpipe.exporting.located import METRES, Located
 
 MOT_COLUMNS = ["frame", "id", "left", "top", "width", "height", "confidence", "x_m", "y_m", "z_m"]
@@ -34,7 +35,7 @@ def write_mot(folder: Path, tracks: Located) -> None:
     Frames, ids and pixels count from 1 there; a box is as wide and high as the object.
     """
     counted = tracks.counted
-    for clip in tracks.table["clip"].unique():
+    for clip in progress(tracks.table["clip"].unique(), f"export {tracks.name}"):
         rows = counted[counted["clip"] == clip].sort_values(["frame", "object"])
         _save(folder / f"{clip}.txt", _boxes(rows, tracks, str(clip)), header=False)
         _write_sequence(folder / clip / "seqinfo.ini", tracks, str(clip))
@@ -77,7 +78,8 @@ def write_movement(folder: Path, tracks: Located) -> None:
 
     A row a frame of the clip, a lost object without a position and with likelihood 0.
     """
-    for clip, rows in tracks.table.groupby("clip"):
+    by_clip = tracks.table.groupby("clip")
+    for clip, rows in progress(by_clip, f"export {tracks.name}", len(by_clip)):
         parts = {
             ("physpipe", f"object_{number}", POINT, name): mine.set_index("frame")[column].to_numpy()
             for number, mine in rows.groupby("object")

@@ -1,5 +1,6 @@
 """Tracks in the pixels and frame numbers that another program counts in."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -13,6 +14,8 @@ from physpipe.io.clips import ClipSet
 
 Pixels = Literal["clip", "source"]
 METRES = ["x_m", "y_m"]
+SAME_RATE = 1e-6
+"""Relative difference of frame rates that are one."""
 
 
 @dataclass(frozen=True)
@@ -74,11 +77,18 @@ class Located:
             "pixels": self.pixels,
             "axes": "origin at the centre of the top-left pixel, x right, y down",
             "frames": f"{frames}, from 0",
-            "frames_per_s": {clip: self.fps(clip) for clip in self.table["clip"].unique()},
-            "clip_frames_per_s": {clip: self.clip_fps(clip) for clip in self.table["clip"].unique()},
+            "frames_per_s": self._of_clips(self.fps),
+            "clip_frames_per_s": self._of_clips(self.clip_fps),
             "pixels_per_metre": self.pixels_per_metre,
             "pixels_per_metre_of": "the recording",
         }
+
+    def _of_clips(self, rate: Callable[[str], float]) -> float | dict[str, float]:
+        """One figure where all clips agree, else clip to figure."""
+        rates = {clip: rate(clip) for clip in self.table["clip"].unique()}
+        first = next(iter(rates.values()))
+        alike = np.allclose(list(rates.values()), first, rtol=SAME_RATE, equal_nan=True)
+        return first if alike else rates
 
 
 def located(
@@ -88,17 +98,23 @@ def located(
 
     Raises InputError when there are no tracks, or some of a clip that the set does not have.
     """
-    if table.empty:
-        raise InputError(path, "no tracks", "run `dvc repro`; film that nobody annotated has no truth to export")
+    refuse_nothing_found(path, table)
     origin = clips.table[["clip", "frame", "source", "source_frame", "source_time_s", "status"]]
     joined = table.merge(origin.rename(columns={"status": "frame_status"}), on=["clip", "frame"], how="left")
     if joined["source"].isna().any():
         clip = joined.loc[joined["source"].isna(), "clip"].iloc[0]
-        raise InputError(
-            path, f"tracks of clip {clip}, which the set has not so long", "run `dvc repro` to track again"
-        )
+        reason = f"tracks of clip {clip}, which the set has not so long"
+        raise InputError(path, reason, "track the clips again, or give by --table what was tracked in these")
     groups = [_located(rows, clips.geometry(str(clip)), pixels, scale) for clip, rows in joined.groupby("clip")]
     return Located(name, pixels, pd.concat(groups, ignore_index=True), clips, radius_px, scale)
+
+
+def refuse_nothing_found(path: Path, table: pd.DataFrame) -> None:
+    """Raises InputError where no object of the track table of the file `path` has a position anywhere."""
+    if not table["visible"].any():
+        reason = "no tracks: the tracker found nothing, or, in a table of truth, nobody annotated the film"
+        mend = "see report/index.html for what the tracker saw, annotate, or give other tracks by --table"
+        raise InputError(path, reason, mend)
 
 
 def _located(rows: pd.DataFrame, geometry: Geometry, pixels: Pixels, scale: float | None) -> pd.DataFrame:

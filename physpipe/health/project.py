@@ -11,6 +11,7 @@ from physpipe.core.parallel import worker_count
 from physpipe.core.params import PARAMS, Section, read
 from physpipe.health.asking import Ask
 from physpipe.health.finding import Finding
+from physpipe.health.wording import counted
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import folders
 from physpipe.report.page import ReportParams
@@ -67,7 +68,7 @@ def _sections(kinds: dict[str, type[Section]]) -> Iterator[Finding]:
 def _film(name: str) -> Finding:
     raw = Path("data/raw") / name
     try:
-        return Finding("ok", f"film of {name}: {len(folders.recordings(raw))} recordings in {raw}")
+        return Finding("ok", f"film of {name}: {counted(len(folders.recordings(raw)), 'recording')} in {raw}")
     except InputError as error:
         mend = f"`dvc checkout {raw}.dvc` brings it back; a new set comes by `physpipe add {name} FOLDER`"
         return Finding("problem", f"film of {name}: {error.where}: {error.reason}", mend)

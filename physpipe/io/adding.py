@@ -1,17 +1,20 @@
 """New film into the project: recordings, and what is known about them, each to its place."""
 
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pandas as pd
 
 from physpipe.core.errors import InputError
+from physpipe.core.progress import progress
 from physpipe.io import folders, handwritten, results, split_file
 from physpipe.io.annotations import COLUMNS, CORRECTIONS, REFERENCE, TEMPLATES
 from physpipe.io.atomic import replacing_folder
 
 POSITIONS = ["frame", "x", "y"]
+BLOCK = 2**20
+"""Bytes copied at a time."""
 
 
 def copy_film(folder: Path, raw: Path, annotations: Path) -> list[Path]:
@@ -43,11 +46,20 @@ def copy_film(folder: Path, raw: Path, annotations: Path) -> list[Path]:
 
 
 def _copy(folder: Path, found: Iterable[Path], film: Path) -> None:
-    files = [file for path in found for file in (folders.images(path) if path.is_dir() else [path])]
-    for file in [*files, *folder.glob(split_file.SPLIT_FILE)]:
-        target = film / file.relative_to(folder)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(file, target)
+    recorded = [file for path in found for file in (folders.images(path) if path.is_dir() else [path])]
+    files = [*recorded, *folder.glob(split_file.SPLIT_FILE)]
+    blocks = sum(-(-file.stat().st_size // BLOCK) for file in files)
+    copying = (block for file in files for block in _copied(file, film / file.relative_to(folder)))
+    for _ in progress(copying, "copy film (MiB)", blocks):
+        pass
+
+
+def _copied(file: Path, target: Path) -> Iterator[int]:
+    """Copies a file, and yields the bytes of each block that is done."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("rb") as source, target.open("wb") as copy:
+        while block := source.read(BLOCK):
+            yield copy.write(block)
 
 
 def _references(folder: Path, found: Iterable[Path]) -> list[pd.DataFrame]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from physpipe.core.geometry import Geometry
 from physpipe.ingest.rates import WRONG_CLAIM
 from physpipe.io.split_file import SPLIT_FILE
-from physpipe.probing.advice import FEWEST_CLIPS, Advice
+from physpipe.probing.advice import FEWEST_CLIPS, FORECAST_FRAMES, Advice, horizon
 from physpipe.probing.findings import Finding
 
 JUMP_PX, TRAVEL_PX = 0.5, 2.0
@@ -41,7 +41,8 @@ def _film(finding: Finding) -> list[str]:
     if film.clock.frames < FEWEST_FRAMES:
         found.append(f"only {film.clock.frames} frames: film longer, or more of it")
     if finding.repeated > REPEATED:
-        found.append(f"{finding.repeated:.0%} of the frames repeat the one before: give the true rate by --fps")
+        mend = "give the true rate by `physpipe add --fps`"
+        found.append(f"{finding.repeated:.0%} of the frames repeat the one before: {mend}")
     return found
 
 
@@ -66,7 +67,7 @@ def _objects(finding: Finding, geometry: Geometry, per_px: float) -> list[str]:
     found = []
     diameter, speed = finding.diameter_px, finding.speed_px
     if finding.movers is not None and finding.movers.number is None:
-        found.append("frames do not agree on how many objects there are: count them, and give --objects")
+        found.append("frames do not agree on how many objects there are: count them, and give `physpipe add --objects`")
     if finding.disturbed > DISTURBED:
         found.append(f"something else moves in {finding.disturbed:.0%} of the looks (a hand, a shadow?): keep it out")
     if finding.moving < MOVING:
@@ -99,10 +100,14 @@ def hurts_of_set(found: Sequence[Finding], advice: Advice) -> list[str]:
     if max(rates) > min(rates) * (1 + WRONG_CLAIM) and advice.source_fps is None:
         said.append(f"rates from {min(rates):.4g} to {max(rates):.4g} frames/s: `fps` brings them to one")
     if len({each.movers.number for each in found if each.movers}) > 1:
-        said.append("recordings do not agree on how many objects there are: give --objects, or make a set of each")
+        mend = "give `physpipe add --objects`, or make a set of each"
+        said.append(f"recordings do not agree on how many objects there are: {mend}")
     if advice.cut.empty:
         mend = f"add film, or say by a {SPLIT_FILE} which recording is for what"
         said.append(f"no clip for {' and '.join(advice.cut.empty)}, as names are drawn: {mend}")
+    if horizon(advice.cut.frames) < FORECAST_FRAMES:
+        short = f"clips of {advice.cut.frames} frames only, forecast to frame {horizon(advice.cut.frames)}"
+        said.append(f"{short}: film longer, or cut fewer and longer ones by `physpipe add --clip-frames`")
     if advice.cut.clips < FEWEST_CLIPS:
         said.append(f"only about {advice.cut.clips} clips of {advice.cut.frames} frames: too little to learn from")
     return said

@@ -72,12 +72,17 @@ def test_three_bad_lines_are_named_at_once_and_nothing_is_served(project, annota
     [
         ("rnik", "did you mean `rink`?"),
         ("bowls", "`bowls`: is simulated: its truth is exact"),
-        ("../rink", "no key"),
-        ("empty", "clips.parquet: no such file. To mend: run `dvc repro`"),
+        ("../rink", "no data set `../rink` (did you mean `rink`?). To mend: use one of rink, bowls, empty, other"),
+        (
+            "empty",
+            "clips.parquet: no such file. To mend: run `physpipe add empty FOLDER`, then `dvc repro ingest@empty`",
+        ),
+        ("other", '-S "run.simulated=[]" -S "run.supervised=[]" ingest@other`, which makes it'),
     ],
 )
 def test_a_set_that_cannot_be_annotated_is_refused(project, monkeypatch, name, said):
-    Path("params.yaml").write_text(Path("params.yaml").read_text() + "  empty: {motion: {objects: null}}\n")
+    more = "  empty: {motion: {objects: null}}\n  other: {}\n"
+    Path("params.yaml").write_text(Path("params.yaml").read_text() + more)
     assert said in refusal(monkeypatch, name)
 
 

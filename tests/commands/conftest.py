@@ -28,6 +28,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copy(ROOT / "params.yaml", root)
     monkeypatch.chdir(root)
     monkeypatch.setenv("PHYSPIPE_WORKERS", "1")
+    monkeypatch.setattr("physpipe.commands.add.ask", lambda *words: "")  # takes a second; one test asks the real DVC
     return root
 
 

@@ -17,7 +17,7 @@ def healthy(monkeypatch):
 def test_warnings_are_no_problem(healthy, run):
     printed = run("doctor")
     assert "warning  a project\n         to mend: mend it" in printed
-    assert "0 problems, 1 warnings, 1 kinds of stages would run" in printed
+    assert "0 problems, 1 warning, 1 kind of stages would run" in printed
 
 
 def test_a_problem_ends_with_1(healthy, run, monkeypatch, capsys):

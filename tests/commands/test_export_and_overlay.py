@@ -25,7 +25,9 @@ def test_an_export_is_a_folder_that_says_what_it_is(run, balls, to, files):
     assert sorted(path.name for path in folder.iterdir()) == sorted(["about.json", *files])
     about = json.loads((folder / "about.json").read_text())
     assert (about["set"], about["pixels"], about["pixels_per_metre"]) == ("balls", "clip", 200)
-    assert about["frames_per_s"] == {"one_00": 50, "two_00": 50}
+    assert (about["frames_per_s"], about["clip_frames_per_s"]) == (50, 50)
+    written = [path for path in folder.rglob("*.*") if path.name != "about.json"]
+    assert about["files"] == sorted(path.relative_to(folder).as_posix() for path in written)
     assert about["tracks"] == "data/tracks/balls.parquet"
 
 
@@ -49,9 +51,13 @@ def test_a_simulated_set_has_its_camera_s_scale(run, balls):
     [
         (["export", "bals", "--to", "csv"], "no data set `bals` (did you mean `balls`?)"),
         (["export", "pendulum", "--to", "csv"], "data/tracks/pendulum.parquet: no such file"),
+        (["export", "pendulum", "--to", "csv"], 'then `dvc exp run -S "run.datasets=[pendulum]" -S "run.simulated=[]"'),
+        (["export", "bowls", "--to", "csv"], "To mend: run `dvc repro`, which makes it"),
+        (["export", "balls", "--to", "csv", "--table", "absent.parquet"], "To mend: give one that is there"),
         (["export", "balls", "--to", "csv", "--out", "params.yaml/x"], "cannot be written"),
         (["export", "balls", "--to", "csv", "--out", "."], "holds other files"),
         (["overlay", "pendulum"], "data/tracks/pendulum.parquet: no such file"),
+        (["overlay", "pendulum"], 'then `dvc exp run -S "run.datasets=[pendulum]" -S "run.simulated=[]"'),
         (["overlay", "balls", "--split", "valid"], "no tracks of these clips"),
         (["overlay", "balls", "--clips", "three_00"], "no clip `three_00`"),
         (["overlay", "balls", "--predictor", "oracle"], "oracle.parquet: no such file"),
@@ -68,12 +74,29 @@ def test_a_refusal_is_one_line_and_writes_nothing(run, balls, project, words, sa
 
 @pytest.mark.parametrize("pixels", ["clip", "source"])
 def test_overlays_are_of_the_test_clips_at_the_true_rate(run, balls, pixels):
-    assert "1 films" in run("overlay", "balls", "--pixels", pixels)
+    assert "1 film: " in run("overlay", "balls", "--pixels", pixels)
     assert sorted(path.name for path in Path("exports/balls/overlay").iterdir()) == ["about.json", "two_00.mp4"]
     with av.open("exports/balls/overlay/two_00.mp4") as container:
         stream = container.streams.video[0]
         assert (stream.frames, float(stream.average_rate)) == (12, pytest.approx(50, rel=0.01))
         assert stream.width == (192 if pixels == "clip" else 64)  # the report's enlargement is 3
+
+
+@pytest.mark.parametrize("words", [["export", "balls", "--to", "csv"], ["overlay", "balls"]])
+def test_tracks_without_a_position_are_the_tracker_s_trouble_not_the_words(run, balls, words):
+    path = Path("data/tracks/balls.parquet")
+    table = tracks.load(path).assign(x=float("nan"), y=float("nan"), visible=False, status="lost", score=0)
+    tracks.save(path, table, "made up", balls)
+    with pytest.raises(SystemExit, match=r"balls.parquet: no tracks: the tracker found nothing.*report/index.html"):
+        run(*words)
+
+
+def test_notes_in_an_earlier_export_are_kept(run, balls):
+    run("export", "balls", "--to", "csv")
+    Path("exports/balls/csv/notes.md").write_text("mine")
+    with pytest.raises(SystemExit, match=r"exports/balls/csv: holds what is not of the earlier export: notes\.md"):
+        run("export", "balls", "--to", "csv")
+    assert Path("exports/balls/csv/notes.md").read_text() == "mine"
 
 
 def test_clips_can_be_named_and_film_without_forecasts_drawn(run, balls):

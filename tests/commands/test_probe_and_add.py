@@ -1,11 +1,16 @@
 """From a folder of film to a section that ingest accepts, and to clips."""
 
+import shlex
+import shutil
 from pathlib import Path
 
 import pytest
 import yaml
 
+from physpipe import cli
+from physpipe.core.errors import InputError
 from physpipe.core.params import read
+from physpipe.health.asking import ask
 from physpipe.ingest.dataset import IngestParams, ingest
 
 PARAMS = Path("params.yaml")
@@ -41,6 +46,27 @@ def test_comments_and_all_other_lines_stay(run, film):
     assert not [line for line in added.splitlines() if line.rstrip().endswith(("}", "]"))]
 
 
+def test_dvc_keeps_what_was_added(run, film, monkeypatch):
+    monkeypatch.setattr("physpipe.commands.add.ask", ask)
+    ask("dvc", "init", "--no-scm", "-q")
+    assert "DVC keeps the film; data/raw/film.dvc" in run("add", "film", film, "--no-probe")
+    shutil.rmtree("data/raw/film")
+    ask("dvc", "checkout", "-q")
+    assert Path("data/raw/film/deep/b.mkv").read_bytes() == (film / "deep/b.mkv").read_bytes()
+
+
+def test_where_dvc_fails_its_command_is_left_to_the_user(run, film, monkeypatch, capsys):
+    def failing(*words: str) -> str:
+        raise InputError(" ".join(words), "failed (no repository)", "run it by hand to see more")
+
+    monkeypatch.setattr("physpipe.commands.add.ask", failing)
+    monkeypatch.setattr("sys.argv", ["physpipe", "add", "film", str(film), "--no-probe"])
+    cli.main()
+    said = capsys.readouterr()
+    assert "dvc add data/raw/film: failed (no repository)" in said.err
+    assert "Next:\n  dvc add data/raw/film\n  dvc exp run " in said.out
+
+
 def test_ingest_makes_clips_for_every_split_of_what_was_added(run, film):
     run("add", "film", film)
     clips, recordings = ingest("film", Path("data/raw/film"), read("datasets.film.ingest", IngestParams))
@@ -56,6 +82,20 @@ def test_the_user_knows_better(run, film):
     assert section["ingest"]["crop"] == {"left": 1, "top": 2, "width": 40, "height": 40}
     assert (section["ingest"]["fps"], section["ingest"]["clip_frames"], section["ingest"]["min_frames"]) == (50, 20, 20)
     assert section["predict"]["horizon"] == 10
+
+
+def test_a_crop_outside_the_film_is_refused_and_nothing_begun(run, film):
+    before = PARAMS.read_text()
+    with pytest.raises(
+        SystemExit, match=r"^error: --crop: a.mkv: the crop box ends at \(51, 5002\), outside the frame of"
+    ):
+        run("add", "film", film, "--crop", "1,2,50,5000")
+    assert (PARAMS.read_text(), Path("data").exists()) == (before, False)
+
+
+def test_a_length_given_without_a_look_has_a_horizon_inside_it(run, film):
+    run("add", "film", film, "--no-probe", "--clip-frames", 12)
+    assert yaml.safe_load(PARAMS.read_text())["datasets"]["film"]["predict"]["horizon"] == 10
 
 
 def test_without_a_look_the_example_s_values_are_taken(run, film):
@@ -74,7 +114,18 @@ def test_film_that_cannot_be_read_is_said_and_ingest_s_business(run, film, capsy
 def test_a_section_is_named_for_the_folder_and_never_twice(run, film, tmp_path):
     odd = film.rename(tmp_path / "2 pendulums, slow!")
     assert "\n  film_2_pendulums_slow:" in run("probe", odd, "--preview", "x.png")
-    assert "\n  pendulum_2:" in run("probe", odd, "--name", "pendulum", "--preview", "x.png")
+    printed = run("probe", odd, "--name", "pendulum", "--preview", "x.png", "--source-fps", 50)
+    assert f"`physpipe add pendulum {shlex.quote(str(odd))}` gives this film to the section" in printed
+    assert f"where `physpipe add pendulum_2 {shlex.quote(str(odd))} --source-fps 50` puts it" in printed
+    assert "\n  pendulum_2:" in printed
+
+
+def test_a_name_that_has_film_is_not_offered_again(run, film):
+    run("add", "pendulum", film)
+    Path("data/annotations/pendulum_2").mkdir()
+    printed = run("probe", film, "--name", "pendulum")
+    assert "`physpipe add pendulum " not in printed
+    assert "\n  pendulum_3:" in printed
 
 
 @pytest.mark.parametrize(

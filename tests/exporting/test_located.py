@@ -8,6 +8,7 @@ import pytest
 from physpipe.core.errors import InputError
 from physpipe.exporting.located import located
 from physpipe.io import tracks
+from physpipe.io.clips import ClipSet
 
 
 def of(table, clip: str, obj: int):
@@ -59,9 +60,24 @@ def test_a_frame_that_shows_an_older_picture_counts_once_in_the_film(balls):
     assert frames.tolist() == [0, 2, 4, *range(8, 10, 2), *range(12, 40, 2)]
 
 
+def test_a_rate_is_said_once_where_all_clips_have_it_and_else_for_each(balls, tmp_path):
+    about = balls.located("source").about("csv", balls.path)
+    assert (about["frames_per_s"], about["clip_frames_per_s"]) == (pytest.approx(100), pytest.approx(50))
+    slower = balls.clips.table.copy()
+    slower.loc[slower["clip"] == "film_01", ["time_s", "source_time_s"]] *= 2
+    slower.to_parquet(tmp_path / "clips.parquet")
+    about = replace(balls.located("source"), clips=ClipSet(tmp_path)).about("csv", balls.path)
+    assert about["frames_per_s"] == {"film_00": pytest.approx(100), "film_01": pytest.approx(50)}
+    assert about["clip_frames_per_s"] == {"film_00": pytest.approx(50), "film_01": pytest.approx(25)}
+
+
 def test_no_tracks_and_foreign_tracks_are_refused(balls):
-    with pytest.raises(InputError, match="no tracks"):
-        located("balls", balls.path, tracks.empty(), balls.clips, "clip", 3.0, None)
+    lost = balls.table.assign(x=np.float32(np.nan), y=np.float32(np.nan), visible=False, status="lost")
+    for nothing in (tracks.empty(), lost):
+        with pytest.raises(InputError, match="no tracks: the tracker found nothing") as caught:
+            located("balls", balls.path, nothing, balls.clips, "clip", 3.0, None)
+        assert "report/index.html" in caught.value.mend
+        assert "--table" in caught.value.mend
     foreign = balls.table.assign(clip="other_00")
     with pytest.raises(InputError, match="tracks of clip other_00"):
         located(

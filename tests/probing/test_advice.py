@@ -89,6 +89,13 @@ def test_a_split_without_clips_is_warned_of(finding: Finding) -> None:
     assert advise([changed(finding, frames=12)], SIZE, None, None).cut.empty == ()  # a split file decides
 
 
+@pytest.mark.parametrize(("frames", "warned_of"), [(8, True), (11, True), (12, False), (60, False)])
+def test_clips_too_short_to_forecast_in_are_warned_of(finding: Finding, frames: int, warned_of: bool) -> None:
+    advice = advise([finding], SIZE, SHARES, None)
+    said = hurts_of_set([finding], replace(advice, cut=advice.cut._replace(frames=frames)))
+    assert any(f"clips of {frames} frames only, forecast to frame" in each for each in said) == warned_of
+
+
 def test_horizons_fit_their_clips() -> None:
     assert [horizon(frames) for frames in (84, 60, 40, 20, 12, 8)] == [20, 14, 10, 10, 10, 6]
 

@@ -21,7 +21,7 @@ export function tell() {
   const score = now.score === undefined || clip.referenced ? "" : `, score ${now.score.toFixed(2)}`;
   const place = now.x === undefined ? "" : `(${now.x.toFixed(1)}, ${now.y.toFixed(1)}) px${score}`;
   $("where").textContent = [
-    `frame ${frame} of 0 … ${T - 1}, ${clip.times_s[frame].toFixed(2)} s`,
+    `frame ${frame} / ${T - 1}, ${clip.times_s[frame].toFixed(2)} s`,
     `object ${object}: ${why}`,
     place,
   ].join("\n");
