@@ -9,6 +9,8 @@ Columns = dict[str, str]
 """Key of a figure to the head of its column."""
 OURS = ("unsupervised_joint", "unsupervised")
 """Our trackers, the default recipe's first."""
+SHOWN = {"unsupervised": "unsupervised_sequential", "unsupervised_unrefined": "unsupervised_sequential_unrefined"}
+"""Keys of rows that go by another name on the page, where every recipe is named."""
 LEARNED = ("unsupervised", "flow_")
 """Beginnings of the names of trackers that were trained."""
 NO_TOOLS = ("centre", "persistence")
@@ -40,11 +42,13 @@ brackets where seeds differ; test clips only, in pixels of a 128-px frame. "pape
 al. 2018; for a simulated stand-in, that of the real set. Rows of an earlier commit stand until they are measured again;
 the JSON names each row's.
 
-`unsupervised` finds one object after the other and is told how many there are; `unsupervised_joint` finds all at once
-and is told nothing; `_unrefined` are the same before positions are moved to the objects' middles. The others learn
-nothing, but for `flow_*`, whose flow a small network of our own learned from drawn pairs; all are told how many objects
-there are. `lab`, `lucas_kanade`, `*_simple` and the `*_blob` of a flow are told where each object is when it first
-shows, so they have no choice of an object and no offset from its middle to find; `trackpy` is told how large it is.
+Ours are two recipes. `unsupervised_joint`, the default one, finds all objects at once and is told nothing; `metrics/`,
+the report and the README call it `unsupervised`. `unsupervised_sequential` (`unsupervised` in the JSON) finds one
+object after the other and is told how many there are. `_unrefined` are the same before positions are moved to the
+objects' middles. The others learn nothing, but for `flow_*`, whose flow a small network of our own learned from drawn
+pairs; all are told how many objects there are. `lab`, `lucas_kanade`, `*_simple` and the `*_blob` of a flow are told
+where each object is when it first shows, so they have no choice of an object and no offset from its middle to find;
+`trackpy` is told how large it is.
 """
 
 
@@ -95,7 +99,7 @@ def _section(name: str, rows: Mapping[str, Row]) -> str:
     columns = columns_with_figures(COLUMNS, rows.values())
     order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
     lines = [line(["tracker", *columns.values()]), line(["---", *["---:"] * len(columns)])]
-    lines += [line([f"`{each}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
+    lines += [line([f"`{SHOWN.get(each, each)}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
     about = _ours(rows) or next(iter(rows.values()))
     seeds = ", ".join(map(str, about["seeds"]))
     time = "" if about["time_s"] is None else f", {about['time_s']:.0f} s the longest seed"

@@ -31,4 +31,5 @@ def _findings() -> Iterator[Finding]:
         yield Finding("problem", f"the library cannot be loaded ({error})", machine.INSTALL)
         return
     yield from project.check(ask)
+    print("asking DVC what would run: seconds, minutes where much film is new ...", file=sys.stderr, flush=True)
     yield from pipeline.check(ask)

@@ -31,6 +31,7 @@ OF_A_SET: dict[str, type[Section]] = {
     "evaluate": BallParams,
     "predict": PredictParams,
 }
+AUTHOR = ("user.name", "user.email")
 
 
 def check(ask: Ask) -> Iterator[Finding]:
@@ -51,6 +52,7 @@ def check(ask: Ask) -> Iterator[Finding]:
         text = f"`compute.threads` is {compute.threads}, and there are {worker_count()} cores for us"
         yield Finding("warning", text, f"set it to {worker_count()}; metrics then differ in the last digits")
     yield _branch(ask)
+    yield from _author(ask)
 
 
 def _sections(kinds: dict[str, type[Section]]) -> Iterator[Finding]:
@@ -84,3 +86,14 @@ def _branch(ask: Ask) -> Finding:
         text = "Git is on no branch, as after an experiment that was killed: commits would get lost"
         return Finding("warning", text, "`git switch main`, or the branch that you were on")
     return Finding("ok", f"Git is on {branch}")
+
+
+def _author(ask: Ask) -> Iterator[Finding]:
+    """Nothing where Git is absent, which its branch has said."""
+    for key in AUTHOR:
+        try:
+            ask("git", "config", key)
+        except InputError as error:
+            if error.where != "git":
+                text = f"Git has no `{key}`, and `dvc exp run` keeps experiments as commits, which name their author"
+                yield Finding("warning", text, f"`git config --global {key} ...`")

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from physpipe.core.ball import BallParams
 from physpipe.core.params import Section
+from physpipe.core.progress import progress
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.metrics import identity
@@ -64,7 +65,7 @@ def score_trackers(
     cases = _cases(clips, truth, params.other_motion, ball.ball_radius_px)
     figures: dict[str, dict[str, float | bool | None]] = {}
     rows = []
-    for name, table in tables.items():
+    for name, table in progress(tables.items(), "errors of trackers"):
         known = tracks.by_clip(table)
         found = [_matched(known.get(case.clip), case) for case in cases]
         errors = _errors(found, cases)
@@ -81,9 +82,8 @@ def _cases(clips: ClipSet, truth: pd.DataFrame, other: OtherMotionParams, radius
     """The annotated test clips; frames count as disturbed by the user's tags or, if there are none, by what moves."""
     tags = truth.loc[truth["tag"] != ""] if "tag" in truth else truth.iloc[:0]
     cases = []
-    for clip, xy in tracks.by_clip(truth).items():
-        if clips.split(clip) != "test":
-            continue
+    tested = {clip: xy for clip, xy in tracks.by_clip(truth).items() if clips.split(clip) == "test"}
+    for clip, xy in progress(tested.items(), "what else moves"):
         frames = clips.frames(clip)
         if len(tags):
             disturbed = np.isin(np.arange(len(xy)), tags.loc[tags["clip"] == clip, "frame"])

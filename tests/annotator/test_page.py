@@ -1,7 +1,6 @@
 """The page in a real browser: everything by keyboard, nothing lost, strangers kept out."""
 
 import http.server
-import shutil
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -29,10 +28,7 @@ expect.set_options(timeout=30_000)  # a busy machine is slow, not wrong
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        pytest.skip("no `chromium` on this machine")
+def browser(chromium: str) -> Iterator[Browser]:
     flags = ["--no-sandbox", f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1"]
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=flags)

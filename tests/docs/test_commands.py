@@ -20,7 +20,7 @@ from physpipe import cli
 PARAMS = yaml.safe_load((ROOT / "params.yaml").read_text())
 MAKEFILE = (ROOT / "Makefile").read_text()
 OURS = ("physpipe", "dvc", "make", "python")
-PROGRAMS = (*OURS, "pip", "source", "git", "rm")
+PROGRAMS = (*OURS, "pip", "source", "git", "cd", "rm")
 EXAMPLES = {"marbles", "dish", "coasting", "saturation"}
 """Names on the pages of what a reader would add."""
 ASSIGNMENT = re.compile(r"[A-Z_]+=\S*")

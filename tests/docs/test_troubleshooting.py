@@ -38,9 +38,9 @@ def ours() -> list[str]:
 
 @cache
 def of_dvc() -> list[str]:
-    """The same of DVC's package."""
-    folder = Path(find_spec("dvc").submodule_search_locations[0])
-    return ["\n".join(said_in(path)) for path in folder.rglob("*.py")]
+    """The same of DVC's packages; the second speaks with Git."""
+    folders = [Path(find_spec(name).submodule_search_locations[0]) for name in ("dvc", "scmrepo")]
+    return ["\n".join(said_in(path)) for folder in folders for path in folder.rglob("*.py")]
 
 
 def parts(message: str) -> list[str]:

@@ -84,9 +84,9 @@ def test_the_page_has_a_line_a_tracker_and_says_what_did_not_run():
     text = page(table(result(0.5, 1.0), result(1.5, 1.0)), {"tray": "no film"}, SPEED)
     lines = text.splitlines()
     assert "| tracker | mean px | paper | 99 % px | lost | locked |" in lines
-    assert "| `unsupervised` | 1.00 (1.50) | 4.10 | 2.00 (3.00) | – | yes |" in lines
+    assert "| `unsupervised_sequential` | 1.00 (1.50) | 4.10 | 2.00 (3.00) | – | yes |" in lines
     assert "| `lab` | 1.00 | – | 9.00 | 0.25 | – |" in lines
-    assert next(line for line in lines if line.startswith("| `")).startswith("| `unsupervised`")
+    assert next(line for line in lines if line.startswith("| `")).startswith("| `unsupervised_sequential`")
     assert "HOTA" not in text
     assert lines[-1] == "- `tray`: no film"
     assert "one thread of a machine; ours on its 2 cores: 1,234 (`bowls`)." in text

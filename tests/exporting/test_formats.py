@@ -13,6 +13,12 @@ CLIPS = ("film_00", "film_01")
 FRAMES = 20
 SEEN = {0: 20, 1: 16}
 """Frames in which each object is seen."""
+TRACKEVAL = (
+    "trackeval 1.3.0 requires opencv-python, whose files opencv-python-headless overwrites; "
+    "passed by hand at commit 7c7f2b4, installed by `pip install --no-deps trackeval tabulate pycocotools`"
+)
+MOVEMENT = "movement 0.15.0 brings 68 packages, 700 MB, beside ours; passed by hand at commit 7c7f2b4"
+"""Why these two are in no extra, and which version read these files of which commit."""
 
 
 def true(balls, clip: str, obj: int) -> np.ndarray:
@@ -80,8 +86,7 @@ def test_mot_says_what_a_sequence_is(balls, tmp_path):
 
 
 def test_trackeval_reads_the_boxes(balls, tmp_path):
-    """Needs trackeval, whose dependency on opencv-python clashes with ours: tried by hand, skipped in CI."""
-    trackeval = pytest.importorskip("trackeval", reason="clashes with opencv-python-headless; tried by hand")
+    trackeval = pytest.importorskip("trackeval", reason=TRACKEVAL)
     ours = tmp_path / "t" / "ours" / "data"
     ours.mkdir(parents=True)
     FORMATS["mot"](ours, balls.located())
@@ -120,8 +125,7 @@ def test_movement_tables_have_deeplabcut_s_four_header_rows(balls, tmp_path, pix
 
 
 def test_movement_loads_them(balls, tmp_path):
-    """Needs movement, which brings a hundred packages: tried by hand, skipped in CI."""
-    loading = pytest.importorskip("movement.io.load_poses", reason="movement is large; tried by hand")
+    loading = pytest.importorskip("movement.io.load_poses", reason=MOVEMENT)
     FORMATS["movement"](tmp_path, balls.located())
     data = loading.from_dlc_file(tmp_path / "film_01.csv", fps=50)
     individual = next(name for name in data.dims if name.startswith("individual"))

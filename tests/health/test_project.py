@@ -70,3 +70,13 @@ def test_a_lost_branch_and_no_git_are_warned_of(params: Path) -> None:
 
     for ask, said in ((lambda *words: "HEAD\n", "on no branch"), (no_git, "git: not found")):
         assert said in [each.text for each in project.check(ask) if each.level == "warning"][-1]
+
+
+def test_a_git_that_does_not_know_its_user_is_warned_of(params: Path) -> None:
+    def nameless(*words: str) -> str:
+        if "user.name" in words:
+            raise InputError(" ".join(words), "failed (no word)", "run it by hand")
+        return "main\n"
+
+    (said,) = [each for each in project.check(nameless) if "user." in each.text]
+    assert (said.level, said.mend) == ("warning", "`git config --global user.name ...`")

@@ -1,4 +1,4 @@
-"""A whole project on a tiny world, reproduced once; each test works on a copy of its own."""
+"""A whole project on a tiny world, as cloned, and reproduced once; each test works on a project of its own."""
 
 import os
 import shutil
@@ -104,13 +104,11 @@ class Project:
     def commit(self, message: str) -> None:
         """Commits everything that Git does not ignore."""
         self.run("git", "add", "--all")
-        self.run("git", "-c", "user.name=test", "-c", "user.email=test@example.invalid", "commit", "-qm", message)
+        self.run("git", "commit", "-qm", message)
 
 
-@pytest.fixture(scope="session")
-def reproduced(tmp_path_factory) -> Project:
-    """The tiny project after its first `dvc repro`; not to be changed."""
-    root = tmp_path_factory.mktemp("project") / "checkout"
+def cloned(root: Path) -> Project:
+    """The tiny project in the new folder `root`, nothing of it run yet, all that Git keeps committed."""
     for part in PARTS:
         source, target = ROOT / part, root / part
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -121,7 +119,17 @@ def reproduced(tmp_path_factory) -> Project:
     project = Project(root)
     project.write(TINY)
     project.run("git", "init", "-q")
+    project.run("git", "config", "user.name", "test")
+    project.run("git", "config", "user.email", "test@example.invalid")
     project.run("dvc", "config", "core.analytics", "false")
+    project.commit("tiny project")
+    return project
+
+
+@pytest.fixture(scope="session")
+def reproduced(tmp_path_factory) -> Project:
+    """The tiny project after its first `dvc repro`; not to be changed."""
+    project = cloned(tmp_path_factory.mktemp("project") / "checkout")
     project.repro()
     project.commit("tiny project, reproduced")
     return project
@@ -131,3 +139,9 @@ def reproduced(tmp_path_factory) -> Project:
 def project(reproduced, tmp_path) -> Project:
     """A copy of the reproduced project to change at will."""
     return reproduced.copied(tmp_path)
+
+
+@pytest.fixture
+def clone(tmp_path) -> Project:
+    """The tiny project of which nothing has run, to change at will."""
+    return cloned(tmp_path / "clone")

@@ -50,11 +50,8 @@ def plots(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def page(plots: Path) -> Iterator[Page]:
+def page(plots: Path, chromium: str) -> Iterator[Page]:
     """The page from disk; anything on the console and requests for anything outside it fail the test."""
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        pytest.skip("no `chromium` on this machine")
     wrong: list[str] = []
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
