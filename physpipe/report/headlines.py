@@ -53,7 +53,6 @@ class Headline(NamedTuple):
     """One figure of ours beside the paper's, and beside standing still where that is a forecast too."""
 
     dataset: str
-    simulated: bool
     what: str
     ours: Any
     paper: Any
@@ -64,7 +63,7 @@ class Headline(NamedTuple):
 
 def headlines(every: Sequence[Evidence], predictor: str) -> list[Headline]:
     """The first table of the page; `predictor` names the one whose errors it holds."""
-    return [Headline(each.name, each.simulated, *values) for each in every for values in _lines(each, predictor)]
+    return [Headline(each.name, *values) for each in every for values in _lines(each, predictor)]
 
 
 def _lines(evidence: Evidence, predictor: str) -> Iterator[Line]:

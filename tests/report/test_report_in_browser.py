@@ -10,10 +10,12 @@ from typing import Any
 
 import cv2
 import numpy as np
+import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
 from physpipe.report import colours
+from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS
 from physpipe.report.page import write_page
 
 expect.set_options(timeout=30_000)  # a busy machine is slow, not wrong
@@ -322,8 +324,36 @@ def test_it_fits_a_phone(opened, scheme):
     box = page.locator(".choices").bounding_box()
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= PHONE["width"]
+    page.keyboard.press("Escape")
+    still = page.locator("#short + .wide thead th").last.bounding_box()
+    assert still["x"] + still["width"] <= PHONE["width"]  # a table that needs no scrolling
+    expect(player(page).locator(".hints")).to_have_text(re.compile(r"^\s*Curve"), use_inner_text=True)  # no keys here
     ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (sum(map(int, re.findall(r"\d+", ground)[:3])) > 380) == (scheme == "light")
+
+
+def test_ticks_at_the_edge_are_whole(opened, project, bowls, tmp_path):
+    learning = pd.DataFrame({"model": "dispnet, tracks", "loss": "valid", "step": [200, 1200], "value": [2.0, 1.0]})
+    write_page(tmp_path / "report", [replace(bowls, learning=learning)], {}, 7, project.shown)
+    page = opened(page_folder=tmp_path / "report", viewport=PHONE)
+    plot = page.locator("[data-chart='bowls/predictor_learning'] .plot svg")
+    tick, box = plot.get_by_text("1200", exact=True).bounding_box(), plot.bounding_box()
+    assert box["x"] <= tick["x"]
+    assert tick["x"] + tick["width"] <= box["x"] + box["width"]
+
+
+def test_every_column_is_on_the_paper(opened, project, bowls, tmp_path):
+    trackers = {name: {**dict.fromkeys(TRACKER_COLUMNS, 0.0123), **row} for name, row in bowls.trackers.items()}
+    predictors = {
+        each: {name: {**dict.fromkeys(PREDICTOR_COLUMNS, 0.0123), **row} for name, row in rows.items()}
+        for each, rows in bowls.predictors.items()
+    }
+    full = replace(bowls, trackers=trackers, predictors=predictors)
+    write_page(tmp_path / "report", [full], {}, 7, project.shown)
+    page = opened(page_folder=tmp_path / "report", viewport={"width": 688, "height": 974})  # A4 within its margins
+    page.emulate_media(media="print")
+    for table in page.locator("table").all():
+        assert table.evaluate("table => table.offsetWidth - table.parentElement.clientWidth") <= 0
 
 
 def test_paper_shows_stills_instead_of_players(opened):
