@@ -1,4 +1,4 @@
-"""One colour a model, everywhere: the palette of Okabe and Ito, which colour-blind people can tell apart, then others."""
+"""One colour a model, everywhere; first the palette of Okabe and Ito, which colour-blind people can tell apart."""
 
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b4c9a")
 REFERENCE = "#000000"
