@@ -11,6 +11,7 @@ import yaml
 from physpipe.baselines.zoo import BASELINES as TRACKERS
 from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
+from physpipe.report.glossary import LOSSES
 
 TEMPLATES = Path(__file__).parents[2] / "metrics" / "templates"
 
@@ -21,13 +22,22 @@ TEMPLATES = Path(__file__).parents[2] / "metrics" / "templates"
 )
 def test_templates_colour_as_the_page_does(name, field, expected):
     template = json.loads((TEMPLATES / f"{name}.json").read_text())
-    (lookup,) = template["transform"]
+    lookup = template["transform"][0]
     assert lookup["lookup"] == lookup["from"]["key"] == field
     assert {row[field]: row["colour"] for row in lookup["from"]["data"]["values"]} == expected
     assert lookup["default"] == colours.FALLBACK
     curves, key = template["hconcat"]
     for each in (curves["spec"], key):
         assert each["encoding"]["color"] == {"field": "colour", "type": "nominal", "scale": None}
+
+
+def test_learning_curves_have_the_words_and_the_colours_of_the_page():
+    template = json.loads((TEMPLATES / "learning.json").read_text())
+    lookup = template["transform"][0]
+    assert {row["loss"]: row["words"] for row in lookup["from"]["data"]["values"]} == LOSSES
+    shades = template["spec"]["encoding"]["color"]["scale"]["range"]
+    assert shades[: len(colours.PALETTE)] == list(colours.PALETTE)
+    assert set(shades) <= set(colours.PREDICTORS.values()) | set(colours.TRACKERS.values())
 
 
 @pytest.mark.parametrize("name", ["error_by_horizon", "tracker_errors", "learning"])
