@@ -9,6 +9,7 @@ from physpipe.report import ablation
 from physpipe.report.page import ReportParams, write_page
 from physpipe.report.run import RunParams, Sources, gather
 from physpipe.report.tables import save_metrics
+from physpipe.tracknet.signals import LockParams
 
 
 def main(
@@ -27,11 +28,12 @@ def main(
     ran = params.read("run", RunParams)
     shown = params.read("report", ReportParams)
     compute = params.read("compute", ComputeParams)
+    bounds = params.read("tracker.lock", LockParams)
     sources = Sources(clips, truth, tracks, scores, forecasts, trackers, predictors)
     measured = ablation.load(ablated)
     every = [gather(name, ran, sources, shown.predictor) for name in ran.datasets]
     save_metrics(metrics, every, shown.predictor)
-    write_page(page, every, measured, compute.seed, shown)
+    write_page(page, every, measured, compute.seed, shown, bounds)
 
 
 if __name__ == "__main__":

@@ -9,10 +9,10 @@ from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
 from physpipe.report.coverage import coverage, coverage_charts
 from physpipe.report.curves import error_distributions
+from physpipe.report.glossary import LOSSES
 from physpipe.report.line import Chart, line
 from physpipe.report.run import SUPERVISIONS, Evidence
 
-LOSSES = {"train": "training loss", "valid": "validation loss"}
 STEEP = 30
 """A positive curve whose largest value is so many times its smallest gets a logarithmic axis."""
 TITLES = {"tracks": "trained on unsupervised tracks", "truth": "trained on true positions"}
@@ -93,7 +93,7 @@ def _learning(learning: pd.DataFrame) -> Iterator[Chart]:
         ]
         steep = (mine["value"] > 0).all() and mine["value"].max() > STEEP * mine["value"].min()
         yield {
-            "title": LOSSES.get(str(loss), str(loss).replace("px2", "px²").replace("_", " ")),
+            "title": LOSSES.get(str(loss), str(loss).replace("_", " ")),
             "x": {"label": "step", "scale": "linear", "at": "step {}"},
             "y": {"label": "", "scale": "log" if steep else "linear"},
             "lines": lines,

@@ -1,4 +1,4 @@
-"""One colour a model, everywhere; the palette of Okabe and Ito, which colour-blind people can tell apart."""
+"""One colour a model, everywhere; first the palette of Okabe and Ito, which colour-blind people can tell apart."""
 
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b4c9a")
 REFERENCE = "#000000"
@@ -28,13 +28,13 @@ TRACKERS = {
     "trackpy": PALETTE[3],
     "median_blob": PALETTE[4],
     "knn_blob": PALETTE[6],
-    "mog2_blob": "#332288",
-    "dis_simple": "#117733",
-    "dis_blob": "#44aa99",
-    "farneback_simple": "#882255",
-    "farneback_blob": "#aa4499",
-    "flow_simple": "#999933",
-    "flow_blob": "#ddcc77",
+    "mog2_blob": "#1f2bd6",
+    "dis_simple": "#7a9a01",
+    "dis_blob": "#8b2323",
+    "farneback_simple": "#e6005c",
+    "farneback_blob": "#b04fd6",
+    "flow_simple": "#5c5a1e",
+    "flow_blob": "#c9b98a",
     "centre": REFERENCE,
     "persistence": "#5a5a5a",
 }

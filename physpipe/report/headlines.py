@@ -28,7 +28,6 @@ PREDICTOR_COLUMNS = {
     "error_2T_px": "at 2T px",
     "error_4T_px": "at 4T px",
     "ade_px": "ADE px",
-    "fde_px": "FDE px",
     "skill_T": "skill at T",
     "nll_nats": "NLL at T, nats",
     "nll_bits": "NLL at T, bits (the paper's “perplexity”)",
@@ -53,7 +52,6 @@ class Headline(NamedTuple):
     """One figure of ours beside the paper's, and beside standing still where that is a forecast too."""
 
     dataset: str
-    simulated: bool
     what: str
     ours: Any
     paper: Any
@@ -64,7 +62,7 @@ class Headline(NamedTuple):
 
 def headlines(every: Sequence[Evidence], predictor: str) -> list[Headline]:
     """The first table of the page; `predictor` names the one whose errors it holds."""
-    return [Headline(each.name, each.simulated, *values) for each in every for values in _lines(each, predictor)]
+    return [Headline(each.name, *values) for each in every for values in _lines(each, predictor)]
 
 
 def _lines(evidence: Evidence, predictor: str) -> Iterator[Line]:
@@ -78,13 +76,13 @@ def _lines(evidence: Evidence, predictor: str) -> Iterator[Line]:
 def _of_tracker(rows: dict[str, Row]) -> Iterator[Line]:
     ours = rows.get("unsupervised", {})
     model = "tracker:unsupervised"
-    yield "unsupervised tracker, mean error in px", ours.get("mean_px"), ours.get("paper_mean_px"), None, model
-    yield "unsupervised tracker, 99 % of frames within px", ours.get("p99_px"), None, None, model
+    yield "unsupervised tracker, mean", ours.get("mean_px"), ours.get("paper_mean_px"), None, model
+    yield "unsupervised tracker, 99 % of frames within", ours.get("p99_px"), None, None, model
 
 
 def _of_predictor(blocks: dict[str, dict[str, Row]], predictor: str) -> Iterator[Line]:
     for supervision, rows in blocks.items():
         ours, still = rows.get(predictor, {}), rows.get("persistence", {})
         for key, horizon in HORIZONS.items() if ours else ():
-            what = f"{predictor} from {SUPERVISION_WORDS[supervision]}, error at {horizon} in px"
+            what = f"{predictor} from {SUPERVISION_WORDS[supervision]}, at {horizon}"
             yield what, ours.get(key), ours.get(f"paper_{key}"), still.get(key), f"predictor:{predictor}"

@@ -15,14 +15,17 @@ from physpipe.core.params import Section
 from physpipe.core.progress import progress
 from physpipe.io.atomic import replacing_folder
 from physpipe.report import ablation, charts, colours
-from physpipe.report.embedding import embedded
+from physpipe.report.glossary import glossary
 from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, headlines, known_columns
+from physpipe.report.heat import heat_columns
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
 from physpipe.report.plate import PlateParams, plate
 from physpipe.report.playing import FilmParams, excerpts, film, shown_clips
 from physpipe.report.run import Evidence, Row
 from physpipe.report.spans import doubtful_spans
 from physpipe.report.stills import stills
+from physpipe.report.verdict import verdict
+from physpipe.tracknet.signals import LockParams
 
 SCRIPTS = ("page", "scale", "chart", "strip", "marks", "player", "controls", "table", "filters", "start")
 STYLES = ("page", "player", "chart", "print")
@@ -52,19 +55,28 @@ class ReportParams(Section):
 
 
 def write_page(
-    folder: Path, every: Sequence[Evidence], measured: Mapping[str, Any], seed: int, params: ReportParams
+    folder: Path,
+    every: Sequence[Evidence],
+    measured: Mapping[str, Any],
+    seed: int,
+    params: ReportParams,
+    bounds: LockParams,
 ) -> None:
-    """Writes `index.html` into `folder`, which appears only when complete; `measured` is metrics/ablation.json."""
+    """Writes `index.html` into `folder`, which appears only when complete.
+
+    `measured` is metrics/ablation.json, `bounds` what a tracker must keep to be locked.
+    """
     environment = Environment(
         loader=PackageLoader("physpipe.report", "page"), autoescape=True, undefined=StrictUndefined
     )
     environment.trim_blocks = environment.lstrip_blocks = True
     environment.filters["figure"] = _figure
-    sections = [_section(each, params) for each in progress(every, "report")]
+    sections = [_section(each, params, bounds) for each in progress(every, "report")]
     html = environment.get_template("index.html").render(
         sections=sections,
         seed=seed,
         headlines=headlines(every, params.predictor),
+        glossary=glossary(_columns(sections), {loss for each in every for loss in each.learning["loss"]}),
         ablation=ablation.parts(measured),
         ablated=measured.get("dataset"),
         ablation_columns=ablation.COLUMNS,
@@ -99,7 +111,14 @@ def _data(sections: Sequence[dict[str, Any]], params: ReportParams) -> str:
     return json.dumps(shown, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
+def _columns(sections: Sequence[dict[str, Any]]) -> set[str]:
+    """Keys of the columns that some table of the page has."""
+    tables = [(each["trackers"], TRACKER_COLUMNS) for each in sections]
+    tables += [(rows, PREDICTOR_COLUMNS) for each in sections for rows in each["predictors"].values()]
+    return {key for rows, columns in tables for key in known_columns(rows, columns)}
+
+
+def _section(evidence: Evidence, params: ReportParams, bounds: LockParams) -> dict[str, Any]:
     """What the template says of one data set."""
     spans = doubtful_spans(evidence.track, evidence.truth, params.span_frames, params.spans_shown)
     chosen = excerpts(evidence, shown_clips(evidence, params.film.clips), spans, params.film.frames_at_most)
@@ -110,6 +129,7 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
         "annotated": evidence.annotated,
         "locked": evidence.locked,
         "signals": evidence.signals,
+        "verdict": verdict(evidence.signals, bounds),
         "counts": {split: len(clips.names(split)) for split in ("train", "valid", "test")},
         "objects": int(evidence.track["object"].max()) + 1 if len(evidence.track) else 0,
         "trackers": _ordered(tracker_rows(evidence)),
@@ -117,14 +137,14 @@ def _section(evidence: Evidence, params: ReportParams) -> dict[str, Any]:
         "charts": charts.charts(evidence, params.coverage_percent),
         "horizon": evidence.horizon,
         "calibration": calibration_row(evidence),
-        "heat_maps": [embedded("image/png", each) for each in evidence.heat_maps],
+        "heat_maps": heat_columns(evidence.heat_maps, len(evidence.signals)),
         "stills": [
             stills(evidence, clip, params.frames_shown, params.upscale, params.trail_frames)
             for clip in shown_clips(evidence, params.clips_shown)
         ],
         "plate": plate(evidence, params.plate, params.upscale),
-        "film": film(evidence, chosen, spans, params.film),
-        "probabilistic": "cov_xx" in evidence.forecast,
+        "film": film(evidence, chosen, spans, params.predictor, params.film),
+        "probabilistic": evidence.probabilistic,
         "spans": spans.to_dict("records"),
     }
 

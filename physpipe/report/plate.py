@@ -17,6 +17,8 @@ from physpipe.report.stills import QUALITY
 
 COLUMNS = 6
 """Panels side by side, at most."""
+PATHLESS = "persistence"
+"""Standing still has no path to draw."""
 
 
 class PlateParams(Section):
@@ -64,13 +66,16 @@ def plate(evidence: Evidence, params: PlateParams, upscale: int) -> dict[str, An
         return None
     clip, reach = choice.clip, params.reach * evidence.horizon
     ground = background(evidence.clips.frames(clip), params.background_frames)
+    last = min(reach, len(evidence.clips.rows(clip)) - 1)
     spots = [round(reach * part / params.spots) for part in range(1, params.spots + 1)]
+    drawn = [name for name in evidence.forecasts if name != PATHLESS]
     return {
         **choice._asdict(),
-        "last": min(reach, len(evidence.clips.rows(clip)) - 1),
-        "columns": min(COLUMNS, len(evidence.forecasts)),
-        "probabilistic": any("cov_xx" in table for table in evidence.forecasts.values()),
-        "panels": [_panel(evidence, each, clip, ground, reach, spots, upscale) for each in evidence.forecasts],
+        "last": last,
+        "spots": [t for t in spots if t <= last],
+        "columns": min(COLUMNS, len(drawn)),
+        "probabilistic": evidence.probabilistic,
+        "panels": [_panel(evidence, each, clip, ground, reach, spots, upscale) for each in drawn],
     }
 
 

@@ -1,6 +1,7 @@
 """What the page's player is given of a data set: excerpts of clips as pictures, and every mark as numbers."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -65,13 +66,19 @@ def _excerpt(evidence: Evidence, clip: str, first: int, count: int) -> Excerpt:
     return Excerpt(clip, first, min(first + count, T) - 1)
 
 
-def film(evidence: Evidence, chosen: Sequence[Excerpt], spans: pd.DataFrame, params: FilmParams) -> dict[str, Any]:
-    """The rate in frames a second, the rate at first, T, the doubtful spans and every excerpt; for JSON."""
+def film(
+    evidence: Evidence, chosen: Sequence[Excerpt], spans: pd.DataFrame, predictor: str, params: FilmParams
+) -> dict[str, Any]:
+    """The rate in frames a second, the rate at first, T, the predictors, the doubtful spans and excerpts; for JSON.
+
+    `predictor` is the one whose forecast is shown at first.
+    """
     rate = _rate(evidence, [each.clip for each in chosen])
     return {
         "fps": rate,
         "fps_at_first": min(rate, params.fps_at_most),
         "horizon": evidence.horizon,
+        "predictors": sorted(evidence.forecasts, key=lambda name: name != predictor),
         "spans": spans[["clip", "first", "last"]].to_dict("records"),
         "scenes": [_scene(evidence, each, params.quality) for each in chosen],
     }
@@ -86,7 +93,6 @@ def _rate(evidence: Evidence, names: Sequence[str]) -> float:
 def _scene(evidence: Evidence, excerpt: Excerpt, quality: int) -> dict[str, Any]:
     clip, shown = excerpt.clip, slice(excerpt.first, excerpt.last + 1)
     marks, frames = marks_of(evidence, clip), evidence.clips.frames(clip)
-    track_px, forecast_px = (nearest_px(xy, marks.truth) for xy in (marks.track, marks.forecast))
     table = evidence.track[evidence.track["clip"] == clip].sort_values(["frame", "object"])
     by_object = {key: table[key].to_numpy().reshape(len(frames), -1)[shown] for key in ("score", "status")}
     status = evidence.clips.rows(clip)["status"].to_numpy()[shown]
@@ -100,15 +106,36 @@ def _scene(evidence: Evidence, excerpt: Excerpt, quality: int) -> dict[str, Any]
         "strip": strip(frames[shown], quality),
         "truth": _listed(marks.truth[shown], 2),
         "track": _listed(marks.track[shown], 2),
-        "forecast": _listed(marks.forecast[shown], 2),
-        "ellipse": _listed(ellipses(marks.covariance[shown]), 3),
-        "seen": marks.ahead[0] - 1 if marks.ahead else None,
+        "forecasts": dict(_forecasts(evidence, excerpt)),
         "score": _listed(by_object["score"], 3),
         "state": ["".join(STATES.get(each, SURE) for each in row) for row in by_object["status"]],
-        "track_px": _listed(track_px[shown], 2),
-        "forecast_px": _listed(forecast_px[shown], 2),
+        "track_px": _listed(nearest_px(marks.track, marks.truth)[shown], 2),
         "faults": {str(number): str(each) for number, each in enumerate(status) if each != "ok"},
     }
+
+
+def _forecasts(evidence: Evidence, excerpt: Excerpt) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each predictor that forecasts the clip: the last frame `seen` and, from number `start` of the excerpt on, marks.
+
+    `ellipse` is None where the predictor does not say how sure it is.
+    """
+    for name, table in evidence.forecasts.items():
+        marks = marks_of(replace(evidence, forecast=table), excerpt.clip)
+        if not marks.ahead:
+            continue
+        first, seen = max(excerpt.first, marks.ahead[0]), marks.ahead[0] - 1
+        ahead = slice(first, excerpt.last + 1)
+        sure = "cov_xx" not in table
+        yield (
+            name,
+            {
+                "seen": seen,
+                "start": first - excerpt.first,
+                "xy": _listed(marks.forecast[ahead], 2),
+                "ellipse": None if sure else _listed(ellipses(marks.covariance[ahead]), 3),
+                "off_px": _listed(nearest_px(marks.forecast, marks.truth)[ahead], 2),
+            },
+        )
 
 
 def ellipses(covariance: NDArray[np.floating]) -> NDArray[np.float64]:

@@ -40,8 +40,8 @@ class RunParams(Section):
 
     @property
     def drawn(self) -> list[str]:
-        """Those whose forecasts are drawn side by side, the learned ones first; standing still has no path."""
-        return list(dict.fromkeys([*self.learned, *(name for name in BASELINES if name != "persistence")]))
+        """Those whose forecasts are drawn, the learned ones first."""
+        return list(dict.fromkeys([*self.learned, *BASELINES]))
 
     def supervisions(self, dataset: str) -> list[str]:
         """Those that predictors are trained with on `dataset`."""
@@ -87,11 +87,11 @@ class Evidence:
     forecast: pd.DataFrame
     """Forecasts of the predictor that the pictures show: clip, object, frame, x, y and perhaps covariances."""
     forecasts: dict[str, pd.DataFrame]
-    """Predictor to such a table, for all that are drawn side by side; all learned from unsupervised tracks."""
+    """Predictor to such a table, for all that are drawn; all learned from unsupervised tracks."""
     horizon: int
     """T of those forecasts: the number of frames from the first seen one that predictors are trained for."""
     heat_maps: list[bytes]
-    """PNGs of the detectors' heat maps: of every start, then of every object."""
+    """PNGs of heat maps: of the first detector's starts and end, then of every detector; fewer where one is missing."""
     locked: bool
     """Whether the tracker found an object, by its own unsupervised verdict."""
     signals: list[Row]
@@ -101,6 +101,11 @@ class Evidence:
     def annotated(self) -> bool:
         """Whether there is any truth to measure errors against."""
         return len(self.truth) > 0
+
+    @property
+    def probabilistic(self) -> bool:
+        """Whether some predictor says how sure it is."""
+        return any("cov_xx" in table for table in self.forecasts.values())
 
 
 def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:

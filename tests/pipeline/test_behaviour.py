@@ -19,6 +19,11 @@ def test_a_second_repro_runs_nothing(project):
     assert project.repro() == set()
 
 
+def test_the_page_is_small_enough_to_send(reproduced):
+    page, sets = reproduced.root / "report" / "index.html", 9
+    assert page.stat().st_size < 15_000_000 / sets  # bytes: a mail takes the page of all sets
+
+
 def test_film_that_a_user_adds_stays_when_dvc_checks_out(project):
     film = project.root / "data/raw/marbles/roll.mp4"
     film.parent.mkdir()

@@ -15,7 +15,9 @@ from physpipe.report.page import ReportParams, write_page
 from physpipe.report.plate import PlateParams
 from physpipe.report.playing import FilmParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather
+from physpipe.tracknet.signals import LockParams
 
+LOCK = LockParams(order_accuracy=0.8, siamese_px=3.0, entropy_nats=3.0, motion_share=0.3, extent_px=0.5)
 ABLATION = {
     "dataset": "bowlr_sim",
     "losses": {
@@ -64,6 +66,7 @@ class Project:
     sources: Sources
     run: RunParams
     shown: ReportParams
+    lock: LockParams
     ablation: dict
 
     def evidence(self, name: str) -> Evidence:
@@ -118,9 +121,9 @@ def _data_set(sources: Sources, world: World, name: str, K: int, annotated: bool
     for number, predictor in enumerate(world.learned):
         path = sources.forecasts / name / "tracks" / f"{predictor}.parquet"
         _forecast(path, world, {clip: paths[clip] for clip in names[3:]}, number + 1.0)
-    for predictor in ("linear", "quadratic"):
+    for number, predictor in enumerate(BASELINES):
         path = sources.forecasts / name / "tracks" / f"{predictor}.parquet"
-        _forecast(path, world, {clip: paths[clip] for clip in names[3:]}, 4.0, sure=True)
+        _forecast(path, world, {clip: paths[clip] for clip in names[3:]}, number + 4.0, sure=True)
 
 
 def _forecast(path: Path, world: World, paths: dict[str, np.ndarray], drift_px: float, sure: bool = False) -> None:
@@ -144,6 +147,11 @@ def _forecast(path: Path, world: World, paths: dict[str, np.ndarray], drift_px: 
     forecasts.save(path, pd.concat(parts), "made up", world.seen, world.horizon)
 
 
+def heat_sheet(columns: tuple[int, ...]) -> np.ndarray:
+    """(40, 30 n, 3): a grey level a column, told by its number."""
+    return np.concatenate([np.full((40, 30, 3), 60 * column, np.uint8) for column in columns], axis=1)
+
+
 def _learning(sources: Sources, name: str, world: World, K: int, locked: bool) -> None:
     step = np.arange(0, 3000, 5)
     fall = np.exp(-step / 800)
@@ -151,9 +159,9 @@ def _learning(sources: Sources, name: str, world: World, K: int, locked: bool) -
     both = pd.concat([curve, curve.assign(phase="rest", disc=0.3 * fall)])
     results.save_csv(sources.trackers / name / "first" / "curve.csv", both)
     results.save_csv(sources.trackers / name / "all" / "curve.csv", curve.assign(phase="object 1") if K > 1 else both)
-    heat = np.uint8(255 * np.random.default_rng(2).random((20, 90)))
-    cv2.imwrite(str(sources.trackers / name / "first" / "heatmaps.png"), heat)
-    signals = [{"object": 0, "entropy_nats": 1.2345, "locked": locked}]
+    for part, columns in (("first", (0, 1, 2)), ("all", (0, 2))):  # the film, a start, the end
+        cv2.imwrite(str(sources.trackers / name / part / "heatmaps.png"), heat_sheet(columns))
+    signals = [{"object": 0, "entropy_nats": 1.2345 if locked else 4.5, "locked": locked}]
     verdict = {"locked": locked, "objects": signals}
     results.save_json(sources.trackers / name / "all" / "verdict.json", verdict)
     fitted = pd.DataFrame({"step": step, "train": 30 * fall + 1, "valid": 32 * fall + 2})
@@ -224,7 +232,7 @@ def build(root: Path, world: World) -> Project:
         plate=PlateParams(reach=2, spots=2, background_frames=9),
         film=film,
     )
-    return Project(world, root, sources, run, shown, ABLATION)
+    return Project(world, root, sources, run, shown, LOCK, ABLATION)
 
 
 @pytest.fixture(scope="session")
@@ -246,5 +254,5 @@ def film(project: Project) -> Evidence:
 def folder(project: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of the made-up project."""
     out = tmp_path_factory.mktemp("out") / "report"
-    write_page(out, project.every(), project.ablation, 7, project.shown)
+    write_page(out, project.every(), project.ablation, 7, project.shown, project.lock)
     return out

@@ -52,7 +52,7 @@ def test_distributions_are_those_of_the_metrics_best_first(drawn, bowls):
 
 
 def test_every_kind_of_loss_gets_a_panel(drawn):
-    assert [panel["title"] for panel in drawn["tracker_learning"]] == ["disc", "entropy nats"]
+    assert [panel["title"] for panel in drawn["tracker_learning"]] == ["disc", "entropy of the heat map, nats"]
     assert [panel["title"] for panel in drawn["predictor_learning"]] == ["training loss", "validation loss"]
     assert {each["model"] for each in drawn["predictor_learning"][0]["lines"]} == {
         "predictor:dispnet",

@@ -3,12 +3,15 @@
 import json
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 import yaml
 
 from physpipe.baselines.zoo import BASELINES as TRACKERS
 from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
+from physpipe.report.glossary import LOSSES
 
 TEMPLATES = Path(__file__).parents[2] / "metrics" / "templates"
 
@@ -19,13 +22,22 @@ TEMPLATES = Path(__file__).parents[2] / "metrics" / "templates"
 )
 def test_templates_colour_as_the_page_does(name, field, expected):
     template = json.loads((TEMPLATES / f"{name}.json").read_text())
-    (lookup,) = template["transform"]
+    lookup = template["transform"][0]
     assert lookup["lookup"] == lookup["from"]["key"] == field
     assert {row[field]: row["colour"] for row in lookup["from"]["data"]["values"]} == expected
     assert lookup["default"] == colours.FALLBACK
     curves, key = template["hconcat"]
     for each in (curves["spec"], key):
         assert each["encoding"]["color"] == {"field": "colour", "type": "nominal", "scale": None}
+
+
+def test_learning_curves_have_the_words_and_the_colours_of_the_page():
+    template = json.loads((TEMPLATES / "learning.json").read_text())
+    lookup = template["transform"][0]
+    assert {row["loss"]: row["words"] for row in lookup["from"]["data"]["values"]} == LOSSES
+    shades = template["spec"]["encoding"]["color"]["scale"]["range"]
+    assert shades[: len(colours.PALETTE)] == list(colours.PALETTE)
+    assert set(shades) <= set(colours.PREDICTORS.values()) | set(colours.TRACKERS.values())
 
 
 @pytest.mark.parametrize("name", ["error_by_horizon", "tracker_errors", "learning"])
@@ -43,8 +55,11 @@ def test_every_model_of_the_project_has_a_colour():
 
 
 @pytest.mark.parametrize("zoo", [colours.PREDICTORS, colours.TRACKERS])
-def test_no_two_models_share_a_colour(zoo):
-    assert len(set(zoo.values())) == len(zoo)
+def test_no_two_models_have_nearly_the_same_colour(zoo):
+    rgb = np.float32([[colours.rgb(each) for each in zoo.values()]]) / 255
+    lab = cv2.cvtColor(rgb, cv2.COLOR_RGB2LAB)[0]
+    apart = np.linalg.norm(lab[:, None] - lab[None], axis=-1)[np.triu_indices(len(zoo), 1)]
+    assert apart.min() > 25  # units of CIELAB; 2.3 can just be told apart side by side
 
 
 def test_a_model_without_a_colour_still_gets_one():

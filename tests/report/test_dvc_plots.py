@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pandas as pd
@@ -12,7 +13,13 @@ import pytest
 import yaml
 from playwright.sync_api import Page, expect, sync_playwright
 
+from physpipe.report.glossary import LOSSES
+
 ROOT = Path(__file__).parents[2]
+SIDES = """ticks => ticks.map((tick) => {
+    const { left, right } = tick.getBoundingClientRect();
+    return [left, right, getComputedStyle(tick).opacity !== "0"];
+})"""
 FADED = "[stroke-opacity='0.08']"
 expect.set_options(timeout=30_000)  # a busy machine is slow, not wrong
 
@@ -76,10 +83,30 @@ def test_plots_of_two_commits_are_drawn_without_a_network(page):
         expect(horizons.locator("svg.marks").get_by_text(name, exact=True).first).to_be_visible()
     lines = horizons.locator(".mark-line path")
     expect(lines).to_have_count(2 * len(curves[["dataset", "supervision", "predictor"]].drop_duplicates()))
+    panels = len(curves[["dataset", "supervision"]].drop_duplicates())  # none without a curve
+    expect(horizons.locator(".concat_0_cell > g")).to_have_count(panels)
+    expect(horizons.locator("[aria-label^='X-axis']")).to_have_count(panels)
     dashes = {line.get_attribute("stroke-dasharray") or "" for line in lines.all()}
     assert len(dashes) == 2  # a commit a style
     expect(charts.nth(1).locator("svg.marks").get_by_text("share of frames").first).to_be_visible()
     expect(charts.nth(2).locator(".mark-line path").first).to_be_attached()
+
+
+def test_learning_curves_have_words_and_ticks_that_stand_apart(page):
+    learning = page.locator(".vega-embed").nth(2)
+    expect(learning.locator(".mark-line path").first).to_be_attached()
+    losses = pd.read_csv(ROOT / "metrics" / "learning.csv")["loss"].unique()
+    told = " ".join(learning.locator(".role-header-label, .role-title, .role-column-header").all_text_contents())
+    for loss in losses:
+        assert LOSSES[loss] in told
+        assert "_" not in LOSSES[loss]
+    axes = learning.locator(".role-axis:has-text('step') .role-axis-label").all()
+    assert len(axes) > len(losses)  # a panel a data set, too
+    for axis in axes:
+        ticks = axis.locator("text").evaluate_all(SIDES)
+        ticks = sorted((left, right) for left, right, seen in ticks if seen)
+        assert len(ticks) > 1
+        assert all(right + 4 <= left for (_, right), (left, _) in pairwise(ticks))  # px
 
 
 def test_a_pressed_name_leaves_its_model_alone(page):

@@ -79,8 +79,8 @@ def test_every_picture_decodes(page):
             kinds.append(kind)
             raw = base64.b64decode(content, validate=True)
             assert cv2.imdecode(np.frombuffer(raw, np.uint8), cv2.IMREAD_COLOR) is not None
-    assert kinds.count("data:image/webp") == 2 * 2 * 3 + 2 * 4  # data sets, clips, frames; panels of the plate
-    assert kinds.count("data:image/png") == 2  # a heat map a data set
+    stills, panels, heat_maps = 2 * 2 * 3, 2 * 4, 2 * 3  # of two data sets: clips, frames; predictors; columns
+    assert kinds == ["data:image/webp"] * (stills + panels + heat_maps)
 
 
 def test_the_films_are_inside_with_every_clip_that_a_link_names(html, page, project):
@@ -133,7 +133,7 @@ def test_other_runs_are_not_shown(page):
 
 
 def test_same_inputs_give_the_same_bytes(project, folder, tmp_path):
-    write_page(tmp_path / "report", project.every(), project.ablation, 7, project.shown)
+    write_page(tmp_path / "report", project.every(), project.ablation, 7, project.shown, project.lock)
     assert (tmp_path / "report" / "index.html").read_bytes() == (folder / "index.html").read_bytes()
 
 
@@ -149,5 +149,27 @@ def test_ablation_shows_what_was_measured_and_what_has_not_run(page, html):
 
 def test_a_set_without_any_track_says_so(project, film, tmp_path):
     lost = replace(film, track=tracks.empty())
-    write_page(tmp_path / "report", [lost], {}, 7, project.shown)
+    write_page(tmp_path / "report", [lost], {}, 7, project.shown, project.lock)
     assert "No track, so nothing to show" in (tmp_path / "report" / "index.html").read_text()
+
+
+def test_the_verdict_stands_beside_its_bounds(page):
+    for name in ("bowls", "film"):
+        assert "at most 3" in page.text[name]
+        assert ("missed" in page.text[name]) == (name == "film")  # whose heat maps are flatter than that
+
+
+def test_models_have_one_spelling(page):
+    words = " ".join(text for section, text in page.text.items() if section)  # the script keeps names as they are
+    assert "lucas kanade" in words
+    assert not re.search(r"lucas_kanade|(median|knn|mog2)_blob", words)
+
+
+def test_one_training_is_not_called_several(project, bowls, tmp_path):
+    texts = {}
+    for detectors in (1, 2):
+        each = replace(bowls, signals=bowls.signals * detectors, heat_maps=[])
+        write_page(tmp_path / str(detectors), [each], {}, 7, project.shown, project.lock)
+        texts[detectors] = (tmp_path / str(detectors) / "index.html").read_text()
+    assert "a training for each further object" not in texts[1]
+    assert "a training for each further object" in texts[2]

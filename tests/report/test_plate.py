@@ -82,21 +82,22 @@ def test_the_page_holds_the_plate_with_words_for_every_picture(bowls, film, proj
     gap = bowls.forecasts["linear"]
     every = {**bowls.forecasts, "linear": gap[gap["clip"] != name]}
     unknown = replace(film, forecast=film.forecast.iloc[:0])
-    write_page(tmp_path / "report", [replace(bowls, forecasts=every), unknown], {}, 7, project.shown)
+    write_page(tmp_path / "report", [replace(bowls, forecasts=every), unknown], {}, 7, project.shown, project.lock)
     html = (tmp_path / "report" / "index.html").read_text()
     part = re.search(r'<section id="plate".*?</section>', html, re.DOTALL)[0]
     words = re.findall(r'alt="([^"]*)"', part)
     assert words[0] == f"bowls, {name}: true path and dispnet's forecast up to frame 10"
-    assert len(words) == len(every) <= COLUMNS
+    assert len(words) == len(every.keys() - {"persistence"}) <= COLUMNS  # standing still has no path
     assert part.count("no forecast of this clip") == 1
     assert part.count("No forecast, so nothing to show") == 1
     assert "is the median of 2 test clips" in part
+    assert "rings and dots at frames 5, 10." in part
     assert "what should hold 90 %" in part
 
 
 def test_without_covariances_the_page_says_nothing_of_ellipses(bowls, project, tmp_path):
     sure = {name: bowls.forecasts[name] for name in ("linear", "quadratic")}
-    write_page(tmp_path / "report", [replace(bowls, forecasts=sure)], {}, 7, project.shown)
+    write_page(tmp_path / "report", [replace(bowls, forecasts=sure)], {}, 7, project.shown, project.lock)
     html = (tmp_path / "report" / "index.html").read_text()
     part = re.search(r'<section id="plate".*?</section>', html, re.DOTALL)[0]
     assert "what should hold 90 %" not in part

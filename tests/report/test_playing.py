@@ -48,17 +48,20 @@ def test_short_clips_are_taken_whole(bowls, project):
 
 def test_marks_and_errors_are_those_of_the_tables(bowls, project):
     world = project.world
-    shown = playing.film(bowls, [Excerpt("bowls_003", 2, 11)], spans(("bowls_000", 10, 13)), PARAMS)
+    shown = playing.film(bowls, [Excerpt("bowls_003", 2, 11)], spans(("bowls_000", 10, 13)), "probnet", PARAMS)
     (scene,) = json.loads(json.dumps(shown, allow_nan=False))["scenes"]
     marks = marks_of(bowls, "bowls_003")
     np.testing.assert_allclose(scene["truth"], marks.truth[2:12], atol=0.006)  # px, rounded to hundredths
     np.testing.assert_allclose(scene["track"], marks.track[2:12], atol=0.006)
-    np.testing.assert_allclose(scene["forecast"][2:], marks.forecast[4:12], atol=0.006)
-    assert scene["forecast"][:2] == [[None], [None]]
-    assert scene["ellipse"][:2] == [[None], [None]]
+    forecast = scene["forecasts"]["dispnet"]
+    np.testing.assert_allclose(forecast["xy"], marks.forecast[4:12], atol=0.006)
+    assert (forecast["seen"], forecast["start"]) == (world.seen - 1, 2)
+    assert len(forecast["ellipse"]) == len(forecast["off_px"]) == 8
+    assert shown["predictors"] == ["probnet", "dispnet", "persistence", "linear", "quadratic"]
+    assert set(scene["forecasts"]) == set(shown["predictors"])
     np.testing.assert_allclose(scene["track_px"], np.full((10, 1), world.off_px), atol=0.006)
     np.testing.assert_allclose(np.diff(scene["times_s"]), 1 / world.rate, atol=1e-4)  # seconds
-    assert (scene["first"], scene["total"], scene["seen"]) == (2, world.frames, world.seen - 1)
+    assert (scene["first"], scene["total"]) == (2, world.frames)
     assert scene["size"] == [world.width, world.height]
     assert shown["fps"] == pytest.approx(world.rate, rel=1e-4)
     assert (shown["fps_at_first"], shown["horizon"]) == (30, world.horizon)
@@ -77,7 +80,9 @@ def test_what_is_lost_or_doubtful_or_broken_is_said(film, monkeypatch):
     rows = film.clips.rows("film_003").copy()
     rows.loc[rows["frame"] == 7, "status"] = "missing"
     monkeypatch.setattr(film.clips, "rows", lambda clip: rows)
-    (scene,) = playing.film(replace(film, track=track), [Excerpt("film_003", 0, 9)], spans(), PARAMS)["scenes"]
+    (scene,) = playing.film(replace(film, track=track), [Excerpt("film_003", 0, 9)], spans(), "dispnet", PARAMS)[
+        "scenes"
+    ]
     assert scene["state"][4:8] == ["tt", "lt", "ta", "tt"]
     assert scene["track"][5][0] is None
     assert scene["truth"] == [[]] * 10
@@ -86,9 +91,20 @@ def test_what_is_lost_or_doubtful_or_broken_is_said(film, monkeypatch):
 
 
 def test_a_forecast_without_covariances_has_no_ellipse(bowls):
-    plain = replace(bowls, forecast=bowls.forecast.drop(columns=["cov_xx", "cov_xy", "cov_yy"]))
-    (scene,) = playing.film(plain, [Excerpt("bowls_003", 0, 9)], spans(), PARAMS)["scenes"]
-    assert scene["ellipse"] == [[None]] * 10
+    (scene,) = playing.film(bowls, [Excerpt("bowls_003", 0, 9)], spans(), "dispnet", PARAMS)["scenes"]
+    without = {name for name, forecast in scene["forecasts"].items() if forecast["ellipse"] is None}
+    assert without == {"persistence", "linear", "quadratic"}
+
+
+def test_each_forecast_is_its_own_predictors(bowls, project):
+    excerpts = [Excerpt("bowls_003", 0, 9), Excerpt("bowls_003", 8, 12), Excerpt("bowls_000", 0, 9)]
+    whole, late, training = playing.film(bowls, excerpts, spans(), "dispnet", PARAMS)["scenes"]
+    for name, table in bowls.forecasts.items():
+        xy = table[table["clip"] == "bowls_003"].set_index("frame").loc[:, ["x", "y"]]
+        np.testing.assert_allclose(np.array(whole["forecasts"][name]["xy"])[:, 0], xy.loc[4:9], atol=0.006)
+        np.testing.assert_allclose(np.array(late["forecasts"][name]["xy"])[:, 0], xy.loc[8:12], atol=0.006)
+        assert (late["forecasts"][name]["seen"], late["forecasts"][name]["start"]) == (project.world.seen - 1, 0)
+    assert training["forecasts"] == {}  # it was learned from
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 2.0])

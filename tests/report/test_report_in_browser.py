@@ -9,10 +9,12 @@ from typing import Any
 
 import cv2
 import numpy as np
+import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
 from physpipe.report import colours
+from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS
 from physpipe.report.page import write_page
 
 expect.set_options(timeout=30_000)  # a busy machine is slow, not wrong
@@ -147,6 +149,43 @@ def test_layers_are_switched_by_box_and_by_key(opened, bowls, project):
         assert (before != after).any(), box
         before = after
     expect(player(page, "film").locator("[name=truth]")).to_have_count(0)  # nobody annotated it
+
+
+def test_the_player_shows_any_predictors_forecast(opened, bowls, project):
+    page, world = opened(), project.world
+    film = player(page)
+    frame = world.seen + 2
+
+    def drawn(predictor: str) -> bool:
+        table = bowls.forecasts[predictor]
+        spot = table[(table["clip"] == "bowls_003") & (table["frame"] == frame)][["x", "y"]].iloc[0]
+        away = np.abs(colour_at(film, spot.to_numpy(), world.width) - colours.rgb(colours.FORECAST))
+        return bool(away.max() < 30)
+
+    film.focus()
+    press(page, "1", "2", "3", "5", *["ArrowRight"] * frame)  # the forecast alone
+    menu = film.get_by_label("forecast of")
+    assert menu.locator("option").all_inner_texts() == ["dispnet", "probnet", "persistence", "linear", "quadratic"]
+    assert drawn("dispnet")
+    assert not drawn("quadratic")
+    for drift_px, name in ((2, "probnet"), (4, "persistence"), (5, "linear"), (6, "quadratic"), (1, "dispnet")):
+        press(page, "p")
+        expect(menu).to_have_value(name)
+        assert drawn(name)
+        expect(film.locator(".now")).to_contain_text(f"forecast off by {0.3 * 3 * drift_px:#.3g} px")  # 3 frames ahead
+    menu.focus()
+    press(page, "ArrowDown")  # the menu keeps its own keys
+    expect(menu).to_have_value("probnet")
+    at(film, "bowls_003", frame)
+    ellipse = film.locator("[name=ellipse]")
+    for name, has_ellipse in (("probnet", True), ("linear", False)):
+        menu.select_option(name)
+        without = picture(film)
+        ellipse.check()
+        assert (picture(film) != without).any() == has_ellipse, name
+        ellipse.uncheck()
+    film.locator(".clip").select_option(index=2)  # a training clip, which nobody forecasts
+    expect(film.locator(".now")).to_contain_text("no forecast of linear")
 
 
 def test_it_plays_pauses_and_seeks(opened, project):
@@ -318,8 +357,36 @@ def test_it_fits_a_phone(opened, scheme):
     box = page.locator(".choices").bounding_box()
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= PHONE["width"]
+    page.keyboard.press("Escape")
+    still = page.locator("#short + .wide thead th").last.bounding_box()
+    assert still["x"] + still["width"] <= PHONE["width"]  # a table that needs no scrolling
+    expect(player(page).locator(".hints")).to_have_text(re.compile(r"^\s*Curve"), use_inner_text=True)  # no keys here
     ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (sum(map(int, re.findall(r"\d+", ground)[:3])) > 380) == (scheme == "light")
+
+
+def test_ticks_at_the_edge_are_whole(opened, project, bowls, tmp_path):
+    learning = pd.DataFrame({"model": "dispnet, tracks", "loss": "valid", "step": [200, 1200], "value": [2.0, 1.0]})
+    write_page(tmp_path / "report", [replace(bowls, learning=learning)], {}, 7, project.shown, project.lock)
+    page = opened(page_folder=tmp_path / "report", viewport=PHONE)
+    plot = page.locator("[data-chart='bowls/predictor_learning'] .plot svg")
+    tick, box = plot.get_by_text("1200", exact=True).bounding_box(), plot.bounding_box()
+    assert box["x"] <= tick["x"]
+    assert tick["x"] + tick["width"] <= box["x"] + box["width"]
+
+
+def test_every_column_is_on_the_paper(opened, project, bowls, tmp_path):
+    trackers = {name: {**dict.fromkeys(TRACKER_COLUMNS, 0.0123), **row} for name, row in bowls.trackers.items()}
+    predictors = {
+        each: {name: {**dict.fromkeys(PREDICTOR_COLUMNS, 0.0123), **row} for name, row in rows.items()}
+        for each, rows in bowls.predictors.items()
+    }
+    full = replace(bowls, trackers=trackers, predictors=predictors)
+    write_page(tmp_path / "report", [full], {}, 7, project.shown, project.lock)
+    page = opened(page_folder=tmp_path / "report", viewport={"width": 688, "height": 974})  # A4 within its margins
+    page.emulate_media(media="print")
+    for table in page.locator("table").all():
+        assert table.evaluate("table => table.offsetWidth - table.parentElement.clientWidth") <= 0
 
 
 def test_paper_shows_stills_instead_of_players(opened):
@@ -348,6 +415,6 @@ def test_names_that_look_like_markup_stay_text(opened, project, bowls, tmp_path)
     """The JSON of the page cannot end its element, whatever a model is called."""
     hostile = "</script><b>"
     learning = bowls.learning.assign(model=hostile)
-    write_page(tmp_path / "report", [replace(bowls, learning=learning)], {}, 7, project.shown)
+    write_page(tmp_path / "report", [replace(bowls, learning=learning)], {}, 7, project.shown, project.lock)
     page = opened(page_folder=tmp_path / "report")
     expect(page.locator("[data-chart='bowls/predictor_learning'] li").first).to_contain_text(hostile)

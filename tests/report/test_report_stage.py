@@ -14,6 +14,7 @@ from stages.report import main
 def write_params(project, folder, **run) -> None:
     compute = {"seed": 7, "threads": 1}
     sections = {"run": {**project.run.model_dump(), **run}, "report": project.shown.model_dump(), "compute": compute}
+    sections |= {"tracker": {"lock": project.lock.model_dump()}}
     (folder / "params.yaml").write_text(yaml.safe_dump(sections))
 
 

@@ -3,6 +3,7 @@
 const MARGIN = { top: 8, right: 12, bottom: 40, left: 52 };
 const SMALL = 430; // px: a narrower panel is drawn lower and with fewer ticks
 const TICK_PX = { x: 70, y: 38 };
+const LETTER_PX = 8; // of a tick, at most
 
 class Chart {
   constructor(panel) {
@@ -53,7 +54,9 @@ class Chart {
     const wanted = ticks ?? ticksOf(scale, ...ends, this.width / TICK_PX.x).map((value) => [value, tickText(value)]);
     const lines = wanted.filter(([value]) => value <= ends[1]).map(([value, text]) => {
       const at = this.toX(value).toFixed(1);
-      return `<line class="grid" x1="${at}" x2="${at}" y1="${MARGIN.top}" y2="${bottom}"/><text x="${at}" y="${bottom + 15}" text-anchor="middle">${escaped(text)}</text>`;
+      const half = (text.length * LETTER_PX) / 2;
+      const inside = clamp(at, half, this.width - half).toFixed(1);
+      return `<line class="grid" x1="${at}" x2="${at}" y1="${MARGIN.top}" y2="${bottom}"/><text x="${inside}" y="${bottom + 15}" text-anchor="middle">${escaped(text)}</text>`;
     });
     const middle = (this.toX(ends[0]) + this.toX(ends[1])) / 2;
     return `${lines.join("")}<text class="label" x="${middle}" y="${bottom + 32}" text-anchor="middle">${escaped(label)}</text>`;

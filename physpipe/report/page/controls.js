@@ -6,9 +6,11 @@ class Controls {
   constructor(player) {
     this.player = player;
     const { element, film } = player;
-    for (const name of ["scrub", "speed", "clip", "now", "scores", "layers"]) this[name] = element.querySelector(`.${name}`);
+    for (const name of ["scrub", "speed", "clip", "predictor", "now", "scores", "layers"]) this[name] = element.querySelector(`.${name}`);
     this.speed.innerHTML = SPEEDS.map((each) => `<option value="${each}">${speedText(each)}</option>`).join("");
     this.clip.innerHTML = film.scenes.map((scene, index) => `<option value="${index}">${escaped(titleOf(scene))}</option>`).join("");
+    this.predictor.innerHTML = film.predictors.map((name) => `<option value="${escaped(name)}">${escaped(name.replaceAll("_", " "))}</option>`).join("");
+    this.predictor.addEventListener("change", () => player.forecastOf(this.predictor.value));
     this.speed.addEventListener("change", () => (player.speed = Number(this.speed.value)));
     this.clip.addEventListener("change", () => this.pick(Number(this.clip.value)));
     this.scrub.addEventListener("input", () => player.step(Number(this.scrub.value) - player.number));
@@ -43,6 +45,11 @@ class Controls {
     this.player.open(clamp(index, 0, this.player.film.scenes.length - 1));
   }
 
+  nextPredictor() {
+    const { film, predictor } = this.player;
+    this.player.forecastOf(film.predictors[(film.predictors.indexOf(predictor) + 1) % film.predictors.length]);
+  }
+
   faster(steps) {
     this.player.speed = SPEEDS[clamp(SPEEDS.indexOf(this.player.speed) - steps, 0, SPEEDS.length - 1)];
     this.tell();
@@ -66,6 +73,7 @@ class Controls {
       ArrowDown: () => this.pick(player.index + 1),
       "+": () => this.faster(1),
       "-": () => this.faster(-1),
+      p: () => this.nextPredictor(),
     };
     const layer = this.known[Number(event.key) - 1];
     const act = acts[event.key] ?? (layer && (() => player.toggle(layer)));
@@ -82,13 +90,15 @@ class Controls {
     this.scrub.value = number;
     this.speed.value = player.speed;
     this.clip.value = player.index;
+    this.predictor.value = player.predictor;
     player.element.querySelector("[data-do=play]").textContent = player.playing ? "Pause" : "Play";
     Object.assign(player.element.dataset, { clip: scene.clip, frame: scene.first + number, playing: player.playing });
     for (const layer of this.known) this.layers.querySelector(`[name=${layer}]`).checked = player.layers.has(layer);
     this.now.setAttribute("aria-live", player.playing ? "off" : "polite");
-    this.now.innerHTML = said(scene, number, player.film.horizon).map((line) => `<span>${escaped(line)}</span>`).join("");
-    if (this.drawn !== scene) this.scores.innerHTML = scoreCurve(scene, player.film.spans);
-    this.drawn = scene;
+    this.now.innerHTML = said(player).map((line) => `<span>${escaped(line)}</span>`).join("");
+    const drawn = `${player.index} ${player.predictor}`;
+    if (this.drawn !== drawn) this.scores.innerHTML = scoreCurve(scene, player.film.spans, player.forecast);
+    this.drawn = drawn;
     this.scrub.setAttribute("aria-valuetext", `frame ${scene.first + number}`);
   }
 }
@@ -100,14 +110,16 @@ function titleOf(scene) {
 }
 
 /** What there is to say of a frame: when it is, how far the marks are off, and what to doubt. */
-function said(scene, number, horizon) {
+function said({ scene, number, forecast, predictor, film }) {
   const frame = scene.first + number;
   const distances = (values) => `${values.map(figure).join(", ")} px`;
   const known = (values) => values.some((value) => value !== null);
   const lines = [`frame ${frame} of ${scene.total - 1}, ${scene.times_s[number].toFixed(3)} s`];
   if (known(scene.track_px[number])) lines.push(`track off by ${distances(scene.track_px[number])}`);
-  if (scene.seen !== null && frame <= scene.seen) lines.push("seen by the predictor");
-  if (known(scene.forecast_px[number])) lines.push(`forecast off by ${distances(scene.forecast_px[number])} (T = ${horizon})`);
+  const off = forecast?.off_px[number - forecast.start];
+  if (!forecast) lines.push(`no forecast of ${predictor.replaceAll("_", " ")}`);
+  else if (frame <= forecast.seen) lines.push("seen by the predictor");
+  if (off && known(off)) lines.push(`forecast off by ${distances(off)} (T = ${film.horizon})`);
   [...scene.state[number]].forEach((state, object) => {
     if (state === "l") lines.push(`object ${object} lost`);
     if (state === "a") lines.push(`object ${object} perhaps mistaken for another`);
@@ -117,13 +129,13 @@ function said(scene, number, horizon) {
 }
 
 /** The lowest score of any object over the frames, doubtful spans shaded, a line where the forecast begins. */
-function scoreCurve(scene, spans) {
+function scoreCurve(scene, spans, forecast) {
   const width = Math.max(scene.times_s.length - 1, 1);
   const x = (frame) => clamp((frame - scene.first) / width, 0, 1).toFixed(4);
   const shades = spans
     .filter((span) => span.clip === scene.clip && span.last >= scene.first && span.first <= scene.first + width)
     .map((span) => `<rect x="${x(span.first)}" y="0" height="1" width="${(x(span.last) - x(span.first)).toFixed(4)}"/>`);
   const points = scene.score.map((row, number) => `${x(scene.first + number)},${(1 - 0.94 * Math.min(...row)).toFixed(3)}`);
-  const begins = scene.seen === null || scene.seen < scene.first ? "" : `<line x1="${x(scene.seen)}" x2="${x(scene.seen)}" y1="0" y2="1"/>`;
+  const begins = forecast && forecast.seen >= scene.first ? `<line x1="${x(forecast.seen)}" x2="${x(forecast.seen)}" y1="0" y2="1"/>` : "";
   return `${shades.join("")}${begins}<polyline points="${points.join(" ")}"/>`;
 }

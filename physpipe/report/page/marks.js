@@ -5,13 +5,22 @@ const SIZES = { picture: 384, ring: 13, dot: 5, line: 2, dash: 7 }; // of marks,
 
 /** Layers that `scene` has anything for. */
 function layersOf(scene) {
-  const something = (key) => scene[key].some((row) => row.some((each) => each !== null));
-  return Object.keys(LAYERS).filter((layer) => something(layer === "trail" ? "track" : layer));
+  const something = (rows) => rows.some((row) => row.some((each) => each !== null));
+  const forecasts = Object.values(scene.forecasts);
+  const has = {
+    truth: something(scene.truth),
+    track: something(scene.track),
+    trail: something(scene.track),
+    forecast: forecasts.some(({ xy }) => something(xy)),
+    ellipse: forecasts.some(({ ellipse }) => ellipse && something(ellipse)),
+  };
+  return Object.keys(LAYERS).filter((layer) => has[layer]);
 }
 
 class Marks {
-  constructor(context, scene) {
-    Object.assign(this, { context, scene });
+  /** `forecast` is one of the scene's, if any. */
+  constructor(context, scene, forecast) {
+    Object.assign(this, { context, scene, coming: forecast });
     this.zoom = context.canvas.width / scene.size[0];
     this.unit = context.canvas.width / SIZES.picture;
   }
@@ -23,7 +32,7 @@ class Marks {
     const colour = (object) => data.colours.objects[object % data.colours.objects.length];
     if (layers.has("trail")) objects.forEach((object) => this.line(this.trail(object, number), colour(object)));
     if (layers.has("forecast")) objects.forEach((object) => this.forecast(object, number));
-    if (layers.has("ellipse")) objects.forEach((object) => this.ellipse(scene.forecast[number][object], scene.ellipse[number][object]));
+    if (layers.has("ellipse")) objects.forEach((object) => this.ellipse(object, number));
     if (layers.has("truth")) scene.truth[number].forEach((spot) => this.ring(spot));
     if (layers.has("track")) scene.track[number].forEach((spot, object) => this.dot(spot, colour(object)));
   }
@@ -33,13 +42,12 @@ class Marks {
   }
 
   forecast(object, number) {
-    const { forecast, track, seen, first } = this.scene;
-    if (seen === null) return;
-    const start = track[seen - first]?.[object] ?? null;
-    const path = forecast.slice(0, number + 1).map((row) => row[object]).filter(Boolean);
-    if (path.length === 0) return;
-    this.line(start ? [start, ...path] : path, data.colours.forecast, SIZES.dash);
-    this.dot(forecast[number][object], data.colours.forecast);
+    if (!this.coming || number < this.coming.start) return;
+    const { xy, seen, start } = this.coming;
+    const last = this.scene.track[seen - this.scene.first]?.[object] ?? null;
+    const path = xy.slice(0, number - start + 1).map((row) => row[object]).filter(Boolean);
+    this.line(last ? [last, ...path] : path, data.colours.forecast, SIZES.dash);
+    this.dot(xy[number - start][object], data.colours.forecast);
   }
 
   // Clip pixels count from the middle of the top-left one, the canvas from its corner.
@@ -57,7 +65,9 @@ class Marks {
     }, dash);
   }
 
-  ellipse(spot, ellipse) {
+  ellipse(object, number) {
+    const row = number - (this.coming?.start ?? Infinity);
+    const [spot, ellipse] = [this.coming?.xy[row]?.[object], this.coming?.ellipse?.[row]?.[object]];
     if (!spot || !ellipse) return;
     const [long, short, angle] = ellipse;
     const outline = () => this.context.ellipse(...this.place(spot), long * this.zoom, short * this.zoom, angle, 0, 2 * Math.PI);

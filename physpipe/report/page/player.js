@@ -4,7 +4,7 @@ const SPEEDS = [2, 1, 1 / 2, 1 / 4, 1 / 8, 1 / 16];
 
 class Player {
   constructor(element, film) {
-    Object.assign(this, { element, film, number: 0, playing: false, layers: new Set(Object.keys(LAYERS)) });
+    Object.assign(this, { element, film, number: 0, playing: false, predictor: film.predictors[0], layers: new Set(Object.keys(LAYERS)) });
     this.canvas = element.querySelector("canvas");
     this.strips = film.scenes.map((scene) => new Strip(scene.strip));
     this.speed = SPEEDS.find((speed) => speed <= 1 && speed * film.fps <= film.fps_at_first * 1.001) ?? SPEEDS.at(-1);
@@ -14,6 +14,11 @@ class Player {
 
   get scene() {
     return this.film.scenes[this.index];
+  }
+
+  /** The chosen predictor's forecast of the scene, if there is one. */
+  get forecast() {
+    return this.scene.forecasts[this.predictor] ?? null;
   }
 
   /** Shows a frame, by its number in the scene, of scene `index`. */
@@ -59,6 +64,12 @@ class Player {
     this.changed();
   }
 
+  forecastOf(predictor) {
+    this.predictor = predictor;
+    this.draw();
+    this.changed();
+  }
+
   play() {
     this.playing = true;
     this.last = null;
@@ -97,6 +108,6 @@ class Player {
     if (this.canvas.height !== rows) this.canvas.height = rows;
     const context = this.canvas.getContext("2d");
     strip.draw(context, this.number, this.scene.size);
-    new Marks(context, this.scene).draw(this.number, this.layers);
+    new Marks(context, this.scene, this.forecast).draw(this.number, this.layers);
   }
 }

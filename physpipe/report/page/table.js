@@ -17,12 +17,13 @@ function compared(one, other) {
   return String(one).localeCompare(String(other), "en", { numeric: true });
 }
 
-/** Orders the table's rows by column `index`; rows without a value stay last either way. */
+/** Orders each group of the table's rows by column `index`; rows without a value stay last either way. */
 function sortBy(table, index, descending) {
-  const body = table.tBodies[0];
-  const rows = [...body.rows].map((row) => ({ row, key: keyOf(row.cells[index]) }));
-  const known = rows.filter(({ key }) => key !== null).sort((a, b) => (descending ? -1 : 1) * compared(a.key, b.key));
-  body.append(...[...known, ...rows.filter(({ key }) => key === null)].map(({ row }) => row));
+  for (const body of table.tBodies) {
+    const rows = all("tr:not(.group)", body).map((row) => ({ row, key: keyOf(row.cells[index]) }));
+    const known = rows.filter(({ key }) => key !== null).sort((a, b) => (descending ? -1 : 1) * compared(a.key, b.key));
+    body.append(...[...known, ...rows.filter(({ key }) => key === null)].map(({ row }) => row));
+  }
 }
 
 function sortable(table) {
