@@ -10,59 +10,21 @@ import json
 import os
 import sys
 from collections.abc import Mapping, Sequence
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import yaml
 from scipy.stats import spearmanr
 
+from experiments.ablation_chart import draw
 from experiments.queue import run_missing
 from experiments.records import CommandError, Experiment, Result, read_results, tracker_only
 from experiments.spread import Row, over_seeds
+from experiments.variants import ALL_LOSSES, CONSTANT, variants
 
-RECIPES = {"losses": "sequential", "ingredients": "joint"}
-"""Part of the ablation to its recipe: the losses' is the one nearest to the paper's, the ingredients' the default."""
 TRACKER = "unsupervised_unrefined"
 """Row that tells: refinement would hide what is lost."""
-LOSSES = {"disc": "causality", "ent": "entropy", "siam": "equivariance"}
-"""The paper's names of the losses, and ours."""
-ALL_LOSSES = "+".join(LOSSES)
-CONSTANT, FULL = "const", "full recipe"
-INGREDIENTS: dict[str, tuple[str, ...]] = {
-    "noise bottleneck": ("net.bottleneck.start_px=0", "net.bottleneck.end_px=0"),
-    "shape only": ("net.discriminator.shape_only=false",),
-    "many shuffles": ("net.negatives=0",),
-    "warm start": ("net.warm_start_steps=0",),
-    "mirrors": ("net.mirrored=false",),
-    "flicker": ("net.flicker=0",),
-    "several strides": ("moments.strides=[1]",),
-    "two starts": ("starts=1",),
-    "strong equivariance": ("net.losses.equivariance=0.001",),
-    "motion prior": ("net.losses.motion=0",),
-}
-"""Ingredient of the recipe to what takes it away, or puts the paper's value in its place."""
 FIGURES = ("mean_px", "p99_px", "off_track", "locked")
-COLOURS = {"mean_px": "#3b6ea5", "p99_px": "#c9d6e4"}
-
-
-def variants() -> dict[str, dict[str, tuple[str, ...]]]:
-    """Part of the ablation to its rows to the overrides of each."""
-    losses = {}
-    for count in range(1, len(LOSSES) + 1):
-        for kept in combinations(LOSSES, count):
-            dropped = [ours for name, ours in LOSSES.items() if name not in kept]
-            losses["+".join(kept)] = tuple(f"net.losses.{each}=0" for each in dropped)
-    without = {f"without {name}": keys for name, keys in INGREDIENTS.items()}
-    parts = {"losses": losses, "ingredients": {**without, FULL: ()}}
-    return {
-        part: {
-            row: (f"tracker.recipe={RECIPES[part]}", *(f"tracker.recipes.{RECIPES[part]}.{key}" for key in keys))
-            for row, keys in rows.items()
-        }
-        for part, rows in parts.items()
-    }
 
 
 def experiments(dataset: str, simulated: bool, seeds: Sequence[int]) -> dict[tuple[str, str, int], Experiment]:
@@ -113,37 +75,6 @@ def _row(found: Mapping[int, Result], dataset: str, tracker: str) -> Row:
     figures = {seed: {key: each.figures[dataset][tracker].get(key) for key in FIGURES} for seed, each in found.items()}
     commits = sorted({each.commit for each in found.values()})
     return {**over_seeds(figures), "seeds": sorted(found), "commit": ", ".join(commits)}
-
-
-def draw(path: Path, parts: Mapping[str, Any]) -> None:
-    """Bars of the mean error and, behind them, of the 99th percentile: the constant and the paper's combinations, then
-    our recipe less one ingredient each, the worst first.
-    """
-    losses = {name: parts["losses"][name] for name in (CONSTANT, *variants()["losses"])}
-    ingredients = sorted(_known(parts["ingredients"]).items(), key=lambda item: -item[1]["mean_px"])
-    figure, axes = plt.subplots(1, 2, figsize=(10, 3.8), layout="constrained")
-    _bars(axes[0], _known(losses), "Losses")
-    _bars(axes[1], dict(ingredients), "Ingredients of the recipe")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=130, metadata={"Software": None})
-    plt.close(figure)
-
-
-def _known(rows: Mapping[str, Row | None]) -> dict[str, Row]:
-    return {name: row for name, row in rows.items() if row and row["mean_px"] is not None}
-
-
-def _bars(axes: Any, rows: Mapping[str, Row], title: str) -> None:
-    names = list(rows)
-    for key, label in (("p99_px", "99th percentile"), ("mean_px", "mean")):
-        axes.barh(names, [row[key] for row in rows.values()], color=COLOURS[key], label=label)
-    figures = [f"{row['mean_px']:.2f} / {row['p99_px']:.1f}" for row in rows.values()]
-    axes.bar_label(axes.containers[0], figures, padding=3, fontsize=8)
-    axes.invert_yaxis()
-    axes.margins(x=0.3)
-    axes.set(title=title, xlabel="error, px: mean / 99th percentile", xscale="symlog")
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 def main() -> None:

@@ -18,7 +18,7 @@ from physpipe.flownet.network import CorrFlow
 from physpipe.ingest.dataset import IngestParams
 from physpipe.predictor_learning.predicting import learned_params, predictor_class
 from physpipe.predictors.base import Seen, Window
-from physpipe.report.page import ReportParams
+from physpipe.report.params import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.scenes.presets import PresetsParams, SimulateParams
 from physpipe.tracker_learning.recipe import TrackerParams

@@ -16,7 +16,7 @@ from physpipe.exporting.target import exported
 from physpipe.health.wording import counted
 from physpipe.io import forecasts, tracks
 from physpipe.io.clips import ClipSet
-from physpipe.report.page import ReportParams
+from physpipe.report.params import ReportParams
 
 
 def run(words: Namespace) -> None:

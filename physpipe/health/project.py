@@ -14,7 +14,7 @@ from physpipe.health.finding import Finding
 from physpipe.health.wording import counted
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import folders
-from physpipe.report.page import ReportParams
+from physpipe.report.params import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.tracker_learning.recipe import TrackerParams
 from physpipe.trackers.tables import ObjectsParams

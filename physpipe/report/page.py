@@ -4,14 +4,12 @@ import json
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
-from pydantic import Field
 
-from physpipe.core.params import Section
 from physpipe.core.progress import progress
 from physpipe.io.atomic import replacing_folder
 from physpipe.report import ablation, charts, colours
@@ -19,8 +17,9 @@ from physpipe.report.glossary import glossary
 from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, headlines, known_columns
 from physpipe.report.heat import heat_columns
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
-from physpipe.report.plate import PlateParams, plate
-from physpipe.report.playing import FilmParams, excerpts, film, shown_clips
+from physpipe.report.params import ReportParams
+from physpipe.report.plate import plate
+from physpipe.report.playing import excerpts, film, shown_clips
 from physpipe.report.run import Evidence, Row
 from physpipe.report.spans import doubtful_spans
 from physpipe.report.stills import stills
@@ -29,29 +28,6 @@ from physpipe.tracknet.signals import LockParams
 
 SCRIPTS = ("page", "scale", "chart", "strip", "marks", "player", "controls", "table", "filters", "start")
 STYLES = ("page", "player", "chart", "print")
-
-
-class ReportParams(Section):
-    """What the report shows."""
-
-    predictor: str
-    """Predictor of the headline figures, pictures and films; one of run.learned, or a baseline."""
-    clips_shown: int = Field(ge=1)
-    """Number of test clips in a data set's contact sheet, at most; a row each."""
-    frames_shown: int = Field(ge=1)
-    """Pictures of each of those clips, from the last seen frame to the last forecast one."""
-    upscale: int = Field(ge=1)
-    """Pixels of a picture per pixel of a clip."""
-    trail_frames: int = Field(ge=0)
-    """Past positions drawn behind a tracked object, in frames."""
-    spans_shown: int = Field(ge=0)
-    """Number of doubtful spans of the track in the table."""
-    span_frames: int = Field(ge=1)
-    """Length of a doubtful span in frames."""
-    coverage_percent: list[Annotated[float, Field(gt=0, lt=100)]] = Field(min_length=1)
-    """What the ellipses claim to hold whose coverage is shown, ascending."""
-    plate: PlateParams
-    film: FilmParams
 
 
 def write_page(

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from physpipe.core.params import Section
 from physpipe.report.brushes import CHI2_90
+from physpipe.report.listing import listed
 from physpipe.report.overlays import marks_of
 from physpipe.report.run import Evidence
 from physpipe.report.spans import nearest_px
@@ -102,14 +103,14 @@ def _scene(evidence: Evidence, excerpt: Excerpt, quality: int) -> dict[str, Any]
         "first": excerpt.first,
         "total": len(frames),
         "size": [frames.shape[2], frames.shape[1]],
-        "times_s": _listed(evidence.clips.times_s(clip)[shown], 5),
+        "times_s": listed(evidence.clips.times_s(clip)[shown], 5),
         "strip": strip(frames[shown], quality),
-        "truth": _listed(marks.truth[shown], 2),
-        "track": _listed(marks.track[shown], 2),
+        "truth": listed(marks.truth[shown], 2),
+        "track": listed(marks.track[shown], 2),
         "forecasts": dict(_forecasts(evidence, excerpt)),
-        "score": _listed(by_object["score"], 3),
+        "score": listed(by_object["score"], 3),
         "state": ["".join(STATES.get(each, SURE) for each in row) for row in by_object["status"]],
-        "track_px": _listed(nearest_px(marks.track, marks.truth)[shown], 2),
+        "track_px": listed(nearest_px(marks.track, marks.truth)[shown], 2),
         "faults": {str(number): str(each) for number, each in enumerate(status) if each != "ok"},
     }
 
@@ -131,9 +132,9 @@ def _forecasts(evidence: Evidence, excerpt: Excerpt) -> Iterator[tuple[str, dict
             {
                 "seen": seen,
                 "start": first - excerpt.first,
-                "xy": _listed(marks.forecast[ahead], 2),
-                "ellipse": None if sure else _listed(ellipses(marks.covariance[ahead]), 3),
-                "off_px": _listed(nearest_px(marks.forecast, marks.truth)[ahead], 2),
+                "xy": listed(marks.forecast[ahead], 2),
+                "ellipse": None if sure else listed(ellipses(marks.covariance[ahead]), 3),
+                "off_px": listed(nearest_px(marks.forecast, marks.truth)[ahead], 2),
             },
         )
 
@@ -149,21 +150,3 @@ def ellipses(covariance: NDArray[np.floating]) -> NDArray[np.float64]:
     angle = np.arctan2(vectors[..., 1, 1], vectors[..., 0, 1])
     found = np.stack([axes[..., 1], axes[..., 0], angle], axis=-1)
     return np.where(known[..., None], found, np.nan)
-
-
-def _listed(values: NDArray[np.floating], decimals: int) -> list[Any]:
-    """Nested lists; null for a number that is not known, and for a point or an ellipse that has such a one."""
-    if values.ndim == 1:
-        return list(_numbers(values, decimals))
-    if values.ndim == 2:
-        return [list(_numbers(row, decimals)) for row in values]
-    known = np.isfinite(values).all(axis=-1)
-    return [
-        [list(_numbers(each, decimals)) if there else None for each, there in zip(row, found, strict=True)]
-        for row, found in zip(values, known, strict=True)
-    ]
-
-
-def _numbers(values: NDArray[np.floating], decimals: int) -> Iterator[float | None]:
-    for value in values.tolist():
-        yield round(value, decimals) if np.isfinite(value) else None

@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 from dvc.utils.hydra import apply_overrides
 
-from experiments.ablation import choice, collect, draw, experiments, variants
+from experiments.ablation import choice, collect, experiments
+from experiments.ablation_chart import draw
 from experiments.records import Result
+from experiments.variants import variants
 from physpipe.core.params import read
 from physpipe.tracker_learning.recipe import TrackerParams
 

@@ -11,7 +11,8 @@ import pytest
 from physpipe.core.geometry import Geometry
 from physpipe.core.horizon import BASELINES
 from physpipe.io import clips, forecasts, results, tracks
-from physpipe.report.page import ReportParams, write_page
+from physpipe.report.page import write_page
+from physpipe.report.params import ReportParams
 from physpipe.report.plate import PlateParams
 from physpipe.report.playing import FilmParams
 from physpipe.report.run import Evidence, RunParams, Sources, gather
