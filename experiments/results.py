@@ -19,6 +19,7 @@ import yaml
 from experiments import forecast_runs, forecast_tables, tables, tracker_runs
 from experiments.queue import run_missing
 from experiments.records import CommandError, read_results
+from experiments.spread import Row
 from experiments.tracker_runs import RECIPES, Table
 
 FOLDER, PAGE, SPEED = Path("docs/results"), Path("docs/results.md"), Path("benchmarks/speed.json")
@@ -47,9 +48,13 @@ def _cost(section: Mapping[str, Any]) -> tuple[int, int]:
 
 
 def kept(known: Table, new: Table) -> Table:
-    """The new rows, and those of before that were not measured again; each says its commit."""
+    """The new rows, and those of before that were not measured again with as many seeds; each says its commit."""
     names = [*new, *(name for name in known if name not in new)]
-    return {name: {**known.get(name, {}), **new.get(name, {})} for name in names}
+    return {name: {**known.get(name, {}), **_as_sure(known.get(name, {}), new.get(name, {}))} for name in names}
+
+
+def _as_sure(known: Mapping[str, Row], new: Mapping[str, Row]) -> dict[str, Row]:
+    return {key: row for key, row in new.items() if len(row["seeds"]) >= len(known.get(key, {"seeds": ()})["seeds"])}
 
 
 def main() -> None:

@@ -104,8 +104,9 @@ def test_the_verdict_is_between_ours_and_tools_that_learn_nothing():
     assert "told" not in verdict(rows | {"knn_blob": {"mean_px": 0.4}})
 
 
-def test_rows_stand_until_they_are_measured_again():
-    before = {"bowls": {"lab": {"commit": "old"}, "knn_blob": {"commit": "old"}}, "tray": {"lab": {"commit": "old"}}}
-    after = kept(before, {"bowls": {"lab": {"commit": "new"}}})
-    assert after["bowls"] == {"lab": {"commit": "new"}, "knn_blob": {"commit": "old"}}
+def test_rows_stand_until_they_are_measured_again_with_as_many_seeds():
+    old, new, fewer = ({"seeds": seeds} for seeds in ([0, 1], [1, 2], [3]))
+    before = {"bowls": {"lab": old, "knn_blob": old, "centre": old}, "tray": {"lab": old}}
+    after = kept(before, {"bowls": {"lab": new, "centre": fewer, "flow_blob": fewer}})
+    assert after["bowls"] == {"lab": new, "knn_blob": old, "centre": old, "flow_blob": fewer}
     assert after["tray"] == before["tray"]
