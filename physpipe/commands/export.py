@@ -5,6 +5,7 @@ from argparse import Namespace
 from physpipe.commands.making import made
 from physpipe.commands.places import CLIPS, EXPORTS, TRACKS, known_set
 from physpipe.core.ball import BallParams
+from physpipe.core.errors import InputError
 from physpipe.core.params import read
 from physpipe.exporting.formats import FORMATS
 from physpipe.exporting.located import located
@@ -18,6 +19,8 @@ from physpipe.io.clips import ClipSet
 def run(words: Namespace) -> None:
     """Writes a folder with the tracks and `about.json`."""
     name = known_set(words.name)
+    if words.pixels_per_metre is not None and not words.pixels_per_metre > 0:
+        raise InputError("--pixels-per-metre", f"{words.pixels_per_metre:g} is no scale", "give a number above 0")
     path = made(words.table or TRACKS / f"{name}.parquet", name)
     scale = words.pixels_per_metre or pixels_per_metre(name)
     radius_px = read(f"datasets.{name}.evaluate", BallParams).ball_radius_px

@@ -59,9 +59,7 @@ def _export(words: Parser) -> None:
     words.add_argument("--to", required=True, choices=FORMATS, help="format; see docs/conventions.md")
     words.add_argument("--pixels", choices=("clip", "source"), default="clip", help="of the clips, or of the film")
     _path(words, "--table", metavar="PARQUET", help="another track table (default: the unsupervised tracks)")
-    words.add_argument(
-        "--pixels-per-metre", type=_more_than_0, metavar="PX", help="of the film (default: params.yaml's)"
-    )
+    words.add_argument("--pixels-per-metre", type=float, metavar="PX", help="of the film (default: params.yaml's)")
     _path(words, "--out", metavar="FOLDER", help="new, or of an earlier export (default: exports/NAME/FORMAT)")
 
 
@@ -81,13 +79,6 @@ def _path(words: Parser, name: str, metavar: str, help: str) -> None:
     """A word for a path, which the shell completes."""
     word = words.add_argument(name, type=Path, metavar=metavar, help=help)
     word.complete = shtab.DIRECTORY if metavar == "FOLDER" else shtab.FILE  # type: ignore[attr-defined]
-
-
-def _more_than_0(word: str) -> float:
-    number = float(word)
-    if not 0 < number < float("inf"):
-        raise argparse.ArgumentTypeError(f"`{word}` is not a number above 0")
-    return number
 
 
 def _box(word: str) -> dict[str, int]:

@@ -56,6 +56,7 @@ def test_a_simulated_set_has_its_camera_s_scale(run, balls):
         (["export", "balls", "--to", "csv", "--table", "absent.parquet"], "To mend: give one that is there"),
         (["export", "balls", "--to", "csv", "--out", "params.yaml/x"], "cannot be written"),
         (["export", "balls", "--to", "csv", "--out", "."], "holds other files"),
+        (["export", "balls", "--to", "csv", "--pixels-per-metre", "0"], "0 is no scale"),
         (["overlay", "pendulum"], "data/tracks/pendulum.parquet: no such file"),
         (["overlay", "pendulum"], 'then `dvc exp run -S "run.datasets=[pendulum]" -S "run.simulated=[]"'),
         (["overlay", "balls", "--split", "valid"], "no tracks of these clips"),

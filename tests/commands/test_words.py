@@ -81,11 +81,3 @@ def test_an_interruption_ends_with_130(monkeypatch, tmp_path):
     with pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 130
-
-
-def test_a_scale_that_is_not_above_0_is_refused(monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["physpipe", "export", "x", "--to", "csv", "--pixels-per-metre", "0"])
-    with pytest.raises(SystemExit) as ended:
-        cli.main()
-    assert ended.value.code == 2
-    assert "--pixels-per-metre: `0` is not a number above 0" in capsys.readouterr().err
