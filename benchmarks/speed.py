@@ -26,12 +26,13 @@ from physpipe.baselines.template import TemplateParams
 from physpipe.baselines.zoo import BaselineParams, Settings, known_flows
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.parallel import worker_count
 from physpipe.core.params import read, read_value
 from physpipe.io import annotations, tracks
 from physpipe.io.clips import ClipSet, Split
 from physpipe.trackers import detectors
-from physpipe.trackers.tables import ObjectsParams, track_tables
+from physpipe.trackers.tables import track_tables
 
 OUT = Path(__file__).with_name("speed.json")
 SCRATCH = Path(".scratch/benchmark")

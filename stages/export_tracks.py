@@ -4,11 +4,12 @@ from pathlib import Path
 
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.params import read
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers import detectors
-from physpipe.trackers.tables import ObjectsParams, track_tables
+from physpipe.trackers.tables import track_tables
 
 
 def main(name: str, clips: Path, trained: Path, out: Path, unrefined: Path) -> None:

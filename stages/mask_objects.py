@@ -4,6 +4,7 @@ from pathlib import Path
 
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.params import read
 from physpipe.io.checkpoints import forget, scratch
 from physpipe.io.clips import ClipSet
@@ -11,7 +12,6 @@ from physpipe.tracker_learning.others import learn_others
 from physpipe.tracker_learning.recipe import TrackerParams
 from physpipe.tracker_learning.saving import save_all
 from physpipe.trackers import detectors
-from physpipe.trackers.tables import ObjectsParams
 
 
 def main(name: str, clips: Path, first: Path, out: Path) -> None:

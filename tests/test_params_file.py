@@ -10,6 +10,7 @@ from dvc.utils.hydra import apply_overrides
 from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams, torch_generator
 from physpipe.core.horizon import PredictParams
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.params import read, read_value
 from physpipe.exporting.scale import ScaleParams
 from physpipe.flow_learning.film import as_batch, draw_pairs
@@ -22,7 +23,6 @@ from physpipe.report.params import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.scenes.presets import PresetsParams, SimulateParams
 from physpipe.tracker_learning.recipe import TrackerParams
-from physpipe.trackers.tables import ObjectsParams
 from physpipe.tracknet.model import TrackNet
 from physpipe.tracknet.moments import Moments
 

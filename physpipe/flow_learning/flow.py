@@ -11,7 +11,7 @@ from physpipe.core.params import Section
 from physpipe.flow_learning.film import PairParams, as_batch, draw_pairs
 from physpipe.flow_learning.verdict import VerdictParams
 from physpipe.flownet.network import CorrFlow, CorrFlowParams, endpoint_errors
-from physpipe.learning.training import FitParams, fit
+from physpipe.learning.training import FitParams, Rank, fit
 
 VALID = (0, 0, 1)
 """Key of the pairs that choose the weights: the same whatever is learned, and no training step's (those are > 0)."""
@@ -37,11 +37,11 @@ def learn_flow(params: FlowParams, seed: int, checkpoint: Path) -> tuple[CorrFlo
     held_out = draw_pairs(params.pairs, params.valid_pairs, torch_generator(*VALID))
     batches = [as_batch(held_out[start : start + batch_size]) for start in range(0, len(held_out), batch_size)]
 
-    def validate() -> float:
+    def validate() -> Rank:
         """Error inside the objects and outside them, pixels, weighed alike."""
         with torch.autocast(device().type, torch.bfloat16):
             errors = [endpoint_errors(net(batch.first, batch.second), batch).sum() for batch in batches]
-        return torch.stack(errors).mean().item()
+        return (torch.stack(errors).mean().item(),)
 
     curve = fit(
         net,

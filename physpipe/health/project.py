@@ -7,6 +7,7 @@ from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
 from physpipe.core.horizon import PredictParams
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.parallel import worker_count
 from physpipe.core.params import PARAMS, Section, read
 from physpipe.health.asking import Ask
@@ -17,7 +18,6 @@ from physpipe.io import folders
 from physpipe.report.params import ReportParams
 from physpipe.report.run import RunParams
 from physpipe.tracker_learning.recipe import TrackerParams
-from physpipe.trackers.tables import ObjectsParams
 
 WHOLE: dict[str, type[Section]] = {
     "run": RunParams,

@@ -20,7 +20,8 @@ from physpipe.io import checkpoints
 Batch = Any
 Sampler = Callable[[torch.Generator], Batch]
 """Draws one training batch from the generator alone, so that step n sees the same batch in a resumed run."""
-
+Rank = tuple[float, ...]
+"""How good a model is: compared in order, lower is better; the last is what the curve shows."""
 
 MOST_LOST = 20
 """Steps in a row that may teach nothing, since a forecast ran away and its gradient is not finite."""
@@ -59,7 +60,8 @@ class _Run:
         self.optimiser = torch.optim.AdamW(
             model.parameters(), lr=params.learning_rate, weight_decay=params.weight_decay
         )
-        self.step, self.best, self.stale, self.lost = 0, math.inf, 0, 0
+        self.step, self.stale, self.lost = 0, 0, 0
+        self.best: Rank = (math.inf,)
         self.weights = copy.deepcopy(model.state_dict())
         self.curve: list[dict[str, float]] = []
 
@@ -84,18 +86,18 @@ class _Run:
         for name, value in state["progress"].items():
             setattr(self, name, value)
 
-    def judge(self, score: float) -> None:
-        """Keeps the weights of the lowest score."""
+    def judge(self, rank: Rank) -> None:
+        """Keeps the weights of the lowest rank."""
         self.stale += 1
-        if score < self.best:
-            self.best, self.stale = score, 0
+        if rank < self.best:
+            self.best, self.stale = rank, 0
             self.weights = copy.deepcopy(self.model.state_dict())
 
 
 def fit(
     model: Any,
     sample: Sampler,
-    validate: Callable[[], float],
+    validate: Callable[[], Rank],
     params: FitParams,
     seed: int,
     checkpoint: Path,
@@ -115,9 +117,9 @@ def fit(
         parts = _update(run, sample, torch_generator(seed, step))
         run.step = step
         if step % params.valid_every == 0 or step == params.steps:
-            score = _validated(model, validate)
-            run.judge(score)
-            run.curve.append({"step": step, **parts, "valid": score})
+            rank = _validated(model, validate)
+            run.judge(rank)
+            run.curve.append({"step": step, **parts, "valid": rank[-1]})
             checkpoints.save(checkpoint, run.state())
     model.load_state_dict(run.weights)
     model.eval()
@@ -143,10 +145,10 @@ def _update(run: _Run, sample: Sampler, generator: torch.Generator) -> dict[str,
     return {"train": loss.item(), **parts}
 
 
-def _validated(model: nn.Module, validate: Callable[[], float]) -> float:
+def _validated(model: nn.Module, validate: Callable[[], Rank]) -> Rank:
     model.eval()
     with torch.no_grad():
-        return float(validate())
+        return validate()
 
 
 def _rate(step: int, params: FitParams) -> float:

@@ -12,7 +12,7 @@ from physpipe.core.horizon import TrainedTo
 from physpipe.core.params import Section
 from physpipe.io import checkpoints, results
 from physpipe.io.clips import ClipSet
-from physpipe.learning.training import FitParams, fit
+from physpipe.learning.training import FitParams, Rank, fit
 from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 from physpipe.predictors import PREDICTORS
 from physpipe.predictors.base import Predictor
@@ -69,9 +69,9 @@ def learn_predictor(
     size = params.fit.batch_size
     stretches = [checked[i : i + size] for i in range(0, len(checked), size)]
 
-    def validate() -> float:
+    def validate() -> Rank:
         losses = [len(each) * predictor.validation_loss(valid.batch(each)).item() for each in stretches]
-        return sum(losses) / len(checked)
+        return (sum(losses) / len(checked),)
 
     curve = fit(
         predictor,

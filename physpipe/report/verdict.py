@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from physpipe.tracknet.signals import LockParams
+from physpipe.tracknet.signals import LARGEST, LockParams, keeps
 
 WORDS = {
     "order_accuracy": "orders told apart",
@@ -12,8 +12,6 @@ WORDS = {
     "motion_share": "share of motion near the detection",
     "extent_px": "extent of a trajectory, px",
 }
-LARGEST = ("siamese_px", "entropy_nats")
-"""Figures whose bound is the largest that locks; the others' is the smallest."""
 
 
 class Bounded(NamedTuple):
@@ -29,10 +27,10 @@ class Bounded(NamedTuple):
 
 def verdict(signals: Sequence[Mapping[str, Any]], bounds: LockParams) -> list[Bounded]:
     """The figures that `locked` rests on; `signals` is `objects` of a verdict.json."""
-    return [_bounded(key, [each.get(key) for each in signals], getattr(bounds, key)) for key in WORDS]
+    return [_bounded(key, [each.get(key) for each in signals], bounds) for key in WORDS]
 
 
-def _bounded(key: str, values: list[float | None], bound: float) -> Bounded:
-    largest = key in LARGEST
-    missed = [value is not None and (value > bound if largest else value < bound) for value in values]
-    return Bounded(WORDS[key], f"at {'most' if largest else 'least'} {bound:g}", values, missed)
+def _bounded(key: str, values: list[float | None], bounds: LockParams) -> Bounded:
+    told = f"at {'most' if key in LARGEST else 'least'} {getattr(bounds, key):g}"
+    missed = [value is not None and not keeps(key, value, bounds) for value in values]
+    return Bounded(WORDS[key], told, values, missed)

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import torch
 
@@ -16,7 +15,7 @@ from physpipe.tracknet.model import TrackNet
 def learn_first(clips: ClipSet, params: TrackerParams, compute: ComputeParams, scratch: Path) -> Learned:
     """T1: `starts` short trainings, then the rest of the training for the best of them."""
     recipe = params.chosen()
-    task = lesson(clips, recipe, params.signals)
+    task = lesson(clips, params)
     nets, curves = [], []
     for number in range(recipe.starts):
         torch.manual_seed(int(torch.randint(2**31, (), generator=torch_generator(compute.seed, number))))
@@ -24,7 +23,6 @@ def learn_first(clips: ClipSet, params: TrackerParams, compute: ComputeParams, s
         seed = 1000 * compute.seed + number
         curves.append(task.run(net, recipe.start, seed, scratch / f"start{number}.pt", f"start {number}"))
         nets.append(net)
-    scores = [task.read(each).score(params.signals) for each in nets]
-    best = copied(nets[int(np.argmin(scores))])
+    best = copied(min(nets, key=task.rank))
     curves.append(task.run(best, recipe.rest, 1000 * compute.seed + 999, scratch / "rest.pt", "rest"))
     return Learned(best, pd.concat(curves), task.read(best), nets)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from physpipe.core.determinism import device, torch_generator
 from physpipe.io.clips import ClipSet
-from physpipe.learning.training import FitParams, fit
+from physpipe.learning.training import FitParams, Rank, fit
 from physpipe.tracker_learning.moments import MomentSampler
-from physpipe.tracker_learning.recipe import RecipeParams
+from physpipe.tracker_learning.recipe import TrackerParams
 from physpipe.tracknet.model import TrackNet
 from physpipe.tracknet.moments import Moments
-from physpipe.tracknet.signals import SignalParams, Signals, read_signals
+from physpipe.tracknet.signals import LockParams, SignalParams, Signals, locked, read_signals
 
 
 @dataclass(frozen=True)
@@ -26,16 +26,21 @@ class Lesson:
     train: MomentSampler
     held_out: list[Moments]
     signals: SignalParams
+    lock: LockParams
 
     def read(self, net: TrackNet) -> Signals:
         """Signals on the held-out batches; the same noise for every network and time."""
         with torch.autocast(device().type, torch.bfloat16):
             return read_signals(net.eval(), self.held_out, self.signals, torch_generator(0))
 
+    def rank(self, net: TrackNet) -> Rank:
+        """Lower is better: the unsupervised score, but one that is not locked never stands before one that is."""
+        signals = self.read(net)
+        return not locked(signals, self.lock), signals.score(self.signals)
+
     def run(self, net: TrackNet, params: FitParams, seed: int, checkpoint: Path, what: str) -> pd.DataFrame:
-        """Trains `net` and returns its curve; it is left with the weights of the best unsupervised score."""
-        score = lambda: self.read(net).score(self.signals)  # noqa: E731
-        curve = fit(net, self.train, score, params, seed, checkpoint, what)
+        """Trains `net` and returns its curve; it is left with the weights of the lowest rank."""
+        curve = fit(net, self.train, lambda: self.rank(net), params, seed, checkpoint, what)
         return curve.assign(phase=what)
 
 
@@ -53,12 +58,13 @@ class Learned:
 Ignored = Mapping[str, NDArray[np.bool_]]
 
 
-def lesson(clips: ClipSet, recipe: RecipeParams, signals: SignalParams, ignored: Ignored | None = None) -> Lesson:
+def lesson(clips: ClipSet, params: TrackerParams, ignored: Ignored | None = None) -> Lesson:
     """Moments of the training clips to learn from and of the validation clips to judge by."""
+    recipe = params.chosen()
     train = MomentSampler(clips, clips.names("train"), recipe.moments, recipe.rest.batch_size, ignored)
     valid = MomentSampler(clips, clips.names("valid"), recipe.moments, recipe.rest.batch_size, ignored)
-    held_out = [valid(torch_generator(1, number)) for number in range(signals.batches)]
-    return Lesson(train, held_out, signals)
+    held_out = [valid(torch_generator(1, number)) for number in range(params.signals.batches)]
+    return Lesson(train, held_out, params.signals, params.lock)
 
 
 def copied(net: TrackNet) -> TrackNet:

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
+from physpipe.core.objects import ObjectsParams
 from physpipe.io.clips import ClipSet
 from physpipe.tracker_learning.lesson import Learned, copied, lesson
 from physpipe.tracker_learning.recipe import TrackerParams
 from physpipe.trackers.detectors import together
 from physpipe.trackers.learned import cells
 from physpipe.trackers.sequential import SequentialTracker, hidden_by
-from physpipe.trackers.tables import ObjectsParams
 from physpipe.tracknet.model import TrackNet
 from physpipe.tracknet.moments import Moments
 
@@ -49,7 +49,7 @@ def learn_next(
     """The next detector: the first one's weights, fine-tuned with all earlier objects masked out."""
     recipe, number = params.chosen(), len(found)
     ignored = masks(clips, found, params)
-    task = lesson(clips, recipe, params.signals, ignored)
+    task = lesson(clips, params, ignored)
     left = motion_left(task.held_out, found[0].detector.stride)
     if left < params.least_motion:
         reason = f"asks for more than {number} objects; beside the first {number} only {left:.0%} of the motion is left"

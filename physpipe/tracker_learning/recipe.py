@@ -17,7 +17,7 @@ class RecipeParams(Section):
     net: TrackNetParams
     moments: MomentParams
     starts: int = Field(ge=1)
-    """Short trainings from scratch, of which the one with the best unsupervised score goes on."""
+    """Short trainings from scratch, of which the best one goes on, judged without labels."""
     start: FitParams
     """Training of each start."""
     rest: FitParams

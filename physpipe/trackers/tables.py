@@ -9,10 +9,9 @@ import numpy as np
 import pandas as pd
 import torch
 from numpy.typing import NDArray
-from pydantic import Field
 
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.parallel import in_parallel, worker_count
-from physpipe.core.params import Section
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers.base import Trajectory
@@ -22,13 +21,6 @@ from physpipe.trackers.refinement import refined
 from physpipe.trackers.sequential import SequentialTracker
 
 Result = TypeVar("Result")
-
-
-class ObjectsParams(Section):
-    """What moves in a data set's clips."""
-
-    objects: int | None = Field(ge=1)
-    """Number of objects; empty = as many as move in most clips, for a tracker that finds all at once."""
 
 
 class Found(NamedTuple):

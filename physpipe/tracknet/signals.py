@@ -44,7 +44,7 @@ class Signals:
     """Median root mean square distance of a clip's detections from their mean: 0 for a static spot."""
 
     def score(self, params: SignalParams) -> float:
-        """Lower is better; chooses among starts and checkpoints."""
+        """Lower is better; chooses among starts and checkpoints that are locked alike."""
         return self.order_nats + params.siamese_weight * self.siamese_px
 
 
@@ -63,15 +63,19 @@ class LockParams(Section):
     """Smallest extent of a trajectory."""
 
 
+LARGEST = ("siamese_px", "entropy_nats")
+"""Bounds that are the largest that locks; the others are the smallest."""
+
+
+def keeps(key: str, value: float, bounds: LockParams) -> bool:
+    """Whether the signal `key` keeps its bound."""
+    bound = getattr(bounds, key)
+    return value <= bound if key in LARGEST else value >= bound
+
+
 def locked(signals: Signals, bounds: LockParams) -> bool:
     """Whether the detector follows something that moves, judged without labels."""
-    return (
-        signals.order_accuracy >= bounds.order_accuracy
-        and signals.siamese_px <= bounds.siamese_px
-        and signals.entropy_nats <= bounds.entropy_nats
-        and signals.motion_share >= bounds.motion_share
-        and signals.extent_px >= bounds.extent_px
-    )
+    return all(keeps(key, getattr(signals, key), bounds) for key in LockParams.model_fields)
 
 
 @torch.no_grad()

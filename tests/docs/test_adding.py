@@ -16,10 +16,10 @@ from worlds import BLUE, RED, draw, orbit, save_clips
 
 from physpipe.core.ball import BallParams
 from physpipe.core.horizon import PredictParams
+from physpipe.core.objects import ObjectsParams
 from physpipe.core.params import read
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import forecasts, tracks
-from physpipe.trackers.tables import ObjectsParams
 
 PAGE = ROOT / "docs/adding.md"
 PARTS = ("physpipe", "stages", "params.yaml", ".gitignore")

@@ -6,7 +6,7 @@ from torch import Tensor, nn
 
 from physpipe.core.errors import InputError
 from physpipe.io import checkpoints
-from physpipe.learning.training import FitParams, fit
+from physpipe.learning.training import FitParams, Rank, fit
 
 PARAMS = FitParams(
     steps=12, batch_size=8, learning_rate=1e-2, final_rate=0.1, warmup_steps=3, weight_decay=1e-2, clip_norm=1.0,
@@ -38,7 +38,7 @@ def sample(generator: torch.Generator) -> Tensor:
 
 def error_of(model: Line):
     x = torch.linspace(0, 1, 9)[:, None]
-    return lambda: (model.line(x) - (3 * x + 1)).square().mean()
+    return lambda: ((model.line(x) - (3 * x + 1)).square().mean().item(),)
 
 
 def learned(checkpoint, model=None, params=PARAMS, validate=None, seed=5):
@@ -75,14 +75,27 @@ def test_the_best_weights_are_kept_and_patience_ends_a_hopeless_run(tmp_path):
     scores, seen = iter([2.0, 1.0, 3.0, 4.0, 5.0]), []
     model = Line()
 
-    def validate() -> float:
+    def validate() -> Rank:
         seen.append({name: each.clone() for name, each in model.state_dict().items()})
-        return next(scores)
+        return (next(scores),)
 
     _, curve = learned(tmp_path / "c.pt", model, PARAMS.model_copy(update={"steps": 400, "patience": 2}), validate)
     assert curve["valid"].tolist() == [2.0, 1.0, 3.0, 4.0]
     assert all(torch.equal(model.state_dict()[name], best) for name, best in seen[1].items())
     assert not model.training
+
+
+def test_what_ranks_first_counts_before_the_score_that_the_curve_shows(tmp_path):
+    ranks, seen = iter([(True, 1.0), (False, 5.0), (True, 0.5)]), []
+    model = Line()
+
+    def validate() -> Rank:
+        seen.append({name: each.clone() for name, each in model.state_dict().items()})
+        return next(ranks)
+
+    _, curve = learned(tmp_path / "c.pt", model, validate=validate)
+    assert curve["valid"].tolist() == [1.0, 5.0, 0.5]
+    assert all(torch.equal(model.state_dict()[name], kept) for name, kept in seen[1].items())
 
 
 def test_other_seeds_draw_other_batches(tmp_path):

@@ -9,6 +9,7 @@ import worlds
 
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
+from physpipe.core.objects import ObjectsParams
 from physpipe.io import results, tracks
 from physpipe.learning.training import FitParams
 from physpipe.metrics import trackers as metrics
@@ -22,7 +23,7 @@ from physpipe.trackers.detectors import TrackingParams
 from physpipe.trackers.learned import LearnedTracker, ReadoutParams
 from physpipe.trackers.linking import LinkParams
 from physpipe.trackers.sequential import MaskParams
-from physpipe.trackers.tables import ObjectsParams, track_tables
+from physpipe.trackers.tables import track_tables
 from physpipe.tracknet.detector import DetectorParams
 from physpipe.tracknet.discriminator import DiscriminatorParams
 from physpipe.tracknet.model import BottleneckParams, LossParams, TrackNetParams

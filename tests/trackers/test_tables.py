@@ -5,11 +5,12 @@ import pytest
 import worlds
 from pandas.testing import assert_frame_equal
 
+from physpipe.core.objects import ObjectsParams
 from physpipe.io import tracks
 from physpipe.trackers.base import Trajectory
 from physpipe.trackers.joint import PeakTracker
 from physpipe.trackers.look import RefineParams
-from physpipe.trackers.tables import ObjectsParams, track_tables
+from physpipe.trackers.tables import track_tables
 
 REFINE = RefineParams(
     rounds=2,
