@@ -2,8 +2,9 @@
 
     python -m experiments.results --seeds 0,1,2
 
-Writes trackers.json and predictors.json in docs/results, and docs/results.md. May be stopped and started again: what
-has run stays, and rows of an earlier commit stand until they are measured again. Predictors take the first seed.
+Writes trackers.json, predictors.json and finetuned.json in docs/results, and docs/results.md. May be stopped and
+started again: what has run stays, and rows of an earlier commit stand until they are measured again. Predictors take
+the first seed.
 """
 
 import argparse
@@ -16,7 +17,7 @@ from typing import Any
 
 import yaml
 
-from experiments import forecast_runs, forecast_tables, tables, tracker_runs
+from experiments import forecast_runs, forecast_tables, tables, tracker_runs, tuning_runs
 from experiments.queue import run_missing
 from experiments.records import CommandError, read_results
 from experiments.spread import Row
@@ -24,7 +25,7 @@ from experiments.tracker_runs import RECIPES, Table
 
 FOLDER, PAGE, SPEED = Path("docs/results"), Path("docs/results.md"), Path("benchmarks/speed.json")
 FILM, PAPER = Path("data/raw"), Path("physpipe/report/paper.yaml")
-FORECASTS = "forecasts"
+FORECASTS, FINETUNED = "forecasts", "finetuned"
 """What runs beside the trackers' RECIPES."""
 
 
@@ -61,7 +62,7 @@ def main() -> None:
     """Runs what is missing, then writes what there is; exits with an error when an experiment failed."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--sets", help="some of the data sets only, a,b")
-    options.add_argument("--recipes", default=",".join((*RECIPES, FORECASTS)), help="what runs, a,b")
+    options.add_argument("--recipes", default=",".join((*RECIPES, FORECASTS, FINETUNED)), help="what runs, a,b")
     options.add_argument("--seeds", default="0,1,2")
     options.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="experiments at once")
     options.add_argument("--collect", action="store_true", help="run nothing, write what there is")
@@ -72,12 +73,15 @@ def main() -> None:
     followed = tracker_runs.experiments(names, datasets, seeds)
     grid = forecast_runs.grid(yaml.safe_load(PAPER.read_text()), names)
     forecast = forecast_runs.experiments(grid, datasets, seeds[0])
+    tuned = tuning_runs.experiments(list(grid), datasets, seeds[0])
     asked = set(chosen.sets.split(",") if chosen.sets else names), set(chosen.recipes.split(","))
     now = [each for (name, recipe, _), each in followed.items() if name in asked[0] and recipe in asked[1]]
     now += [each for (name, _), each in forecast.items() if name in asked[0] and FORECASTS in asked[1]]
+    now += [each for name, each in tuned.items() if name in asked[0] and FINETUNED in asked[1]]
     try:
         failed = {} if chosen.collect else run_missing(now, chosen.jobs)
-        results = read_results([*followed.values(), *forecast.values()])
+        results = read_results([*followed.values(), *forecast.values(), *tuned.values()])
+        results |= read_results([tuning_runs.of_trackers(each) for each in tuned.values()])
     except CommandError as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
@@ -86,10 +90,12 @@ def main() -> None:
     trackers = kept(_known(FOLDER / "trackers.json"), tracker_runs.collect(followed, results, speed["rates"]))
     before, new = _known(FOLDER / "predictors.json"), forecast_runs.collect(forecast, results, seeds[0])
     predictors = {name: kept(before.get(name, {}), new.get(name, {})) for name in {**new, **before}}
-    _save("trackers", trackers)
-    _save("predictors", predictors)
+    together = _known(FOLDER / "finetuned.json") | tuning_runs.collect(tuned, results, seeds[0])
+    for name, table in (("trackers", trackers), ("predictors", predictors), ("finetuned", together)):
+        _save(name, table)
     unrun = absent | {name: "not run yet" for name in names if name not in trackers}
-    PAGE.write_text("\n".join([tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid)]))
+    pages = [tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid)]
+    PAGE.write_text("\n".join([*pages, tuning_runs.page(together, list(grid))]))
     for experiment, reason in failed.items():
         print(f"failed {experiment.label}: {reason}", file=sys.stderr)
     sys.exit(bool(failed))

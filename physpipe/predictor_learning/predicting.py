@@ -82,10 +82,15 @@ def learn_predictor(
         checkpoint,
         name,
     )
-    far = valid if kind.sees_end else _twice_as_far(valid, clips, table)
-    with torch.no_grad():
-        predictor.calibrate(far.batch(far.evenly(params.windows.valid_windows).tolist()))
+    calibrate(predictor, clips, table, valid, params.windows.valid_windows)
     return predictor, curve
+
+
+@torch.no_grad()
+def calibrate(predictor: Predictor, clips: ClipSet, table: pd.DataFrame, valid: TrackWindows, count: int) -> None:
+    """Fits how sure it is to at most `count` validation windows, once all else is learned."""
+    far = valid if predictor.sees_end else _twice_as_far(valid, clips, table)
+    predictor.calibrate(far.batch(far.evenly(count).tolist()))
 
 
 def _twice_as_far(valid: TrackWindows, clips: ClipSet, table: pd.DataFrame) -> TrackWindows:

@@ -117,9 +117,14 @@ class TrackWindows:
             numbers[:firsts] = begin[torch.randint(len(begin), (firsts,), generator=generator)]
         return numbers.tolist()
 
+    def film(self, number: int, frames: Sequence[int]) -> NDArray[np.uint8]:
+        """(F, H, W, 3) RGB of those frames of a window, 0 being its first."""
+        clip, at = self.index[number]
+        return self.frames[clip][[at + each for each in frames]]
+
     def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         clip, at = self.index[number]
-        frames = self.frames[clip][[at + each for each in self.seen]]
+        frames = self.film(number, self.seen)
         stretch = slice(at, at + self.horizon + 1)
         if self.camera is None:
             return frames, self.xy[clip][stretch]

@@ -11,11 +11,15 @@ from physpipe.report.coverage import coverage, coverage_charts
 from physpipe.report.curves import error_distributions
 from physpipe.report.glossary import LOSSES
 from physpipe.report.line import Chart, line
-from physpipe.report.run import SUPERVISIONS, Evidence
+from physpipe.report.run import SUPERVISIONS, TUNED, Evidence
 
 STEEP = 30
 """A positive curve whose largest value is so many times its smallest gets a logarithmic axis."""
-TITLES = {"tracks": "trained on unsupervised tracks", "truth": "trained on true positions"}
+TITLES = {
+    "tracks": "trained on unsupervised tracks",
+    "truth": "trained on true positions",
+    TUNED: "trained on unsupervised tracks, then tuned together with the tracker",
+}
 
 
 def charts(evidence: Evidence, coverage_percent: Sequence[float]) -> dict[str, list[Chart]]:

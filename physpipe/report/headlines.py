@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from physpipe.report.paper import predictor_rows, tracker_rows
-from physpipe.report.run import Evidence, Row
+from physpipe.report.run import TUNED, Evidence, Row
 
 TRACKER_COLUMNS = {
     "mean_px": "mean px",
@@ -36,8 +36,17 @@ PREDICTOR_COLUMNS = {
     "energy_off_2T": "energy off at 2T",
 }
 HORIZONS = {"error_T_px": "T", "error_2T_px": "2T"}
-SUPERVISION_WORDS = {"tracks": "unsupervised tracks", "truth": "true positions"}
+SUPERVISION_WORDS = {
+    "tracks": "unsupervised tracks",
+    "truth": "true positions",
+    TUNED: "unsupervised tracks, tuned with the tracker",
+}
 
+TUNING_WORDS = {
+    "score": "tracker's score",
+    "tracker_px": "detections from the refined tracks, px",
+    "forecast_px": "forecasts from the refined tracks, px",
+}
 
 Line = tuple[str, Any, Any, Any, str]
 """What, ours, the paper's, standing still's, and the model."""

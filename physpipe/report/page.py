@@ -14,7 +14,7 @@ from physpipe.core.progress import progress
 from physpipe.io.atomic import replacing_folder
 from physpipe.report import ablation, charts, colours
 from physpipe.report.glossary import glossary
-from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, headlines, known_columns
+from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, TUNING_WORDS, headlines, known_columns
 from physpipe.report.heat import heat_columns
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
 from physpipe.report.params import ReportParams
@@ -60,6 +60,7 @@ def write_page(
         tracker_columns=TRACKER_COLUMNS,
         predictor_columns=PREDICTOR_COLUMNS,
         supervision_titles=charts.TITLES,
+        tuning_words=TUNING_WORDS,
         predictor=params.predictor,
         colours=colours,
         style=Markup(_assets(STYLES, "css")),
@@ -112,6 +113,7 @@ def _section(evidence: Evidence, params: ReportParams, bounds: LockParams) -> di
         "predictors": predictor_rows(evidence),
         "charts": charts.charts(evidence, params.coverage_percent),
         "horizon": evidence.horizon,
+        "tuning": evidence.tuning,
         "calibration": calibration_row(evidence),
         "heat_maps": heat_columns(evidence.heat_maps, len(evidence.signals)),
         "stills": [

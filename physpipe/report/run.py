@@ -1,12 +1,12 @@
 """What ran, and everything that the report shows of it, data set by data set."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from physpipe.core.errors import InputError
 from physpipe.core.horizon import BASELINES
@@ -16,6 +16,8 @@ from physpipe.io.clips import ClipSet
 from physpipe.report.curves import curve_files, learning_curves
 
 SUPERVISIONS = ("tracks", "truth")
+TUNED = "tuned"
+"""Stands beside them for predictors that were tuned together with the tracker, on its tracks."""
 Row = dict[str, Any]
 
 
@@ -32,6 +34,15 @@ class RunParams(Section):
     """Data sets on which they are trained on the truth too, for the paper's supervised rows."""
     flow: list[str] = Field(max_length=1)
     """The flow network that is trained and tracked with, if any: `corrflow`."""
+    finetuned: list[str]
+    """Those of `learned` that are tuned together with the tracker, each in a pair of its own with it."""
+
+    @model_validator(mode="after")
+    def _learned_before_they_are_tuned(self) -> "RunParams":
+        unlearned = [name for name in self.finetuned if name not in self.learned]
+        if unlearned:
+            raise ValueError(f"`finetuned` names {', '.join(unlearned)}, which `learned` does not")
+        return self
 
     @property
     def predictors(self) -> list[str]:
@@ -75,7 +86,9 @@ class Evidence:
     trackers: dict[str, Row]
     """Tracker to its scores."""
     predictors: dict[str, dict[str, Row]]
-    """Supervision to predictor to its scores; only the predictors of this run."""
+    """Supervision, or `tuned` together with the tracker, to predictor to its scores; only those of this run."""
+    tuning: dict[str, Row]
+    """Predictor that was tuned together with the tracker to the verdict on whether both gained."""
     calibration: Row
     """How hard the motion is, as errors of fitted polynomials; empty unless the truth is exact."""
     tracker_errors: pd.DataFrame
@@ -119,14 +132,17 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
     forecast = folder / f"{shown}.parquet"
     heat_maps = [tracker / part / "heatmaps.png" for part in ("first", "all")]
     supervisions = run.supervisions(name)
+    tuned = {each: results.load_json(scores / "finetuned" / f"{each}.json") for each in run.finetuned}
     return Evidence(
         name=name,
         simulated=name in run.simulated,
         clips=ClipSet(sources.clips / name),
         truth=tracks.load(sources.truth / f"{name}.parquet"),
         track=tracks.load(sources.tracks / f"{name}.parquet"),
-        trackers=results.load_json(scores / "trackers.json"),
-        predictors=_of_this_run(scores / "predictors.json", supervisions, run.predictors),
+        trackers=results.load_json(scores / "trackers.json") | _merged(tuned, "trackers"),
+        predictors=_of_this_run(scores / "predictors.json", supervisions, run.predictors)
+        | ({TUNED: _merged(tuned, "predictors")} if tuned else {}),
+        tuning={each: found["gate"] for each, found in tuned.items()},
         calibration=results.load_json(scores / "predictors.json")["calibration"],
         tracker_errors=results.load_csv(scores / "tracker_errors.csv"),
         horizons=_horizons(scores / "horizons.csv", supervisions, run.predictors),
@@ -138,6 +154,10 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
         locked=bool(verdict["locked"]),
         signals=verdict["objects"],
     )
+
+
+def _merged(tuned: Mapping[str, Row], what: str) -> dict[str, Row]:
+    return {name: row for found in tuned.values() for name, row in found[what].items()}
 
 
 def _of_this_run(path: Path, supervisions: Sequence[str], names: Sequence[str]) -> dict[str, dict[str, Row]]:

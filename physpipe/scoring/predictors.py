@@ -1,6 +1,7 @@
 """Figures per predictor from forecast tables and the truth, test split only."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -36,7 +37,7 @@ def score_predictors(
     params: EvaluatePredictorsParams,
     ball: BallParams,
     simulated: Mapping[str, Replay] | None,
-) -> tuple[dict[str, object], pd.DataFrame]:
+) -> tuple[dict[str, Any], pd.DataFrame]:
     """Figures of each supervision's predictors (`tables[supervision][predictor]`), and the error of every frame.
 
     A figure is null when no annotated clip and no forecast reaches its frame, or when it takes a covariance or several
@@ -46,7 +47,7 @@ def score_predictors(
     """
     test = set(clips.names("test"))
     known = {clip: xy for clip, xy in tracks.by_clip(truth).items() if clip in test}
-    figures: dict[str, object] = {"calibration": {} if simulated is None else calibration(truth, horizon)}
+    figures: dict[str, Any] = {"calibration": {} if simulated is None else calibration(truth, horizon)}
     within_px = params.collision_radii * ball.ball_radius_px
     curves = []
     for supervision, predictors in tables.items():

@@ -46,6 +46,9 @@ TINY = {
     "flow.corrflow.verdict.pairs": 2,
     "predictors.dispnet.fit.steps": 3,
     "predictors.dispnet.fit.batch_size": 4,
+    "finetune.fit.steps": 2,
+    "finetune.fit.batch_size": 4,
+    "finetune.held_out": 4,
     "report.clips_shown": 1,
     "report.film.clips": 1,
 }

@@ -86,6 +86,22 @@ def test_learned_flow_runs_when_asked_for_and_leaves_no_row_when_no_longer(proje
     assert scores.read_bytes() == before
 
 
+def test_a_pair_is_tuned_together_when_asked_for_and_its_rows_go_when_no_longer(project):
+    before = (project.root / "metrics/trackers.json").read_bytes()
+    project.write({"run.finetuned": ["dispnet"]})
+    tuning = {"finetune", "finetuned_tracks", "finetuned_forecast", "evaluate_finetuned"}
+    assert project.repro() == {*(f"{each}@bowls-dispnet" for each in tuning), "report"}
+    figures = {
+        each: json.loads((project.root / f"metrics/{each}.json").read_text()) for each in ("trackers", "predictors")
+    }
+    assert {"unsupervised_with_dispnet", "unsupervised_unrefined_with_dispnet"} < set(figures["trackers"]["bowls"])
+    assert list(figures["predictors"]["bowls"]["tuned"]) == ["dispnet"]
+    assert "Tracker and predictor tuned together" in (project.root / "report/index.html").read_text()
+    project.write({"run.finetuned": []})
+    assert project.repro() == {"report"}
+    assert (project.root / "metrics/trackers.json").read_bytes() == before
+
+
 def test_two_clean_runs_give_identical_metrics(project):
     before = (project.root / "metrics/summary.json").read_bytes()
     ran = project.repro("--force")

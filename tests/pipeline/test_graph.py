@@ -15,6 +15,7 @@ MAY_READ_TRUTH = {
     "baseline_tracks",
     "flow_tracks",
     "evaluate_trackers",
+    "evaluate_finetuned",
     "evaluate_predictors",
     "train_supervised",
     "forecast_supervised",

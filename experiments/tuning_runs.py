@@ -1,0 +1,87 @@
+"""Tracker and predictor tuned together, on every set of the paper: which experiments, and the table of what came."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from experiments.records import ONE_THREAD, Experiment, Result, about
+from experiments.spread import Row
+from experiments.tables import line, number
+
+PREDICTOR = "dispnet"
+"""The paper's own."""
+FIGURES = {
+    "detections_px": ("detections px", "trackers", "unsupervised_unrefined", "mean_px"),
+    "track_px": ("tracks px", "trackers", "unsupervised", "mean_px"),
+    "T_px": ("at T px", "predictors", "tracks", "error_T_px"),
+    "2T_px": ("at 2T px", "predictors", "tracks", "error_2T_px"),
+}
+"""Figure to its words, its file in metrics/, the row or block there before tuning, and its key in that row."""
+HEAD = f"""# Tracker and predictor tuned together
+
+From docs/results/finetuned.json. `{PREDICTOR}` and the tracker's detector learn on together, without labels
+(`run.finetuned`; docs/pipeline.md says how). "used": whether nothing that is known without labels got worse; where
+something did, the former two stay in use. Errors on test clips, before and after: of detections, of tracks (moved to
+the objects' middles), of forecasts from those tracks.
+"""
+
+
+def experiments(names: Sequence[str], datasets: Mapping[str, Any], seed: int) -> dict[str, Experiment]:
+    """Data set to its experiment, in the order to run."""
+    return {
+        name: Experiment(
+            f"finetuned-{name}-{PREDICTOR}-seed{seed}",
+            (
+                f"run.datasets=[{name}]",
+                f"run.simulated=[{name if 'simulate' in datasets[name] else ''}]",
+                f"run.learned=[{PREDICTOR}]",
+                "run.supervised=[]",
+                f"run.finetuned=[{PREDICTOR}]",
+                f"report.predictor={PREDICTOR}",
+                f"compute.seed={seed}",
+                ONE_THREAD,
+            ),
+            "predictors",
+        )
+        for name in names
+    }
+
+
+def of_trackers(experiment: Experiment) -> Experiment:
+    """The same experiment, for what it says of trackers."""
+    return experiment._replace(measured="trackers")
+
+
+def collect(wanted: Mapping[str, Experiment], results: Mapping[Experiment, Result], seed: int) -> dict[str, Row]:
+    """Data set to `used` and each of FIGURES, `_before` and `_after`; with commit, seeds, machine, time_s, finished."""
+    table = {}
+    for name, experiment in wanted.items():
+        if experiment in results and of_trackers(experiment) in results:
+            found = {"predictors": results[experiment], "trackers": results[of_trackers(experiment)]}
+            rows = {key: each.figures[name] for key, each in found.items()}
+            table[name] = _row(rows) | about({seed: results[experiment]})
+    return table
+
+
+def _row(rows: Mapping[str, Mapping[str, Any]]) -> Row:
+    tuned = rows["predictors"]["tuned"][PREDICTOR]
+    row: Row = {"used": tuned["gained"]}
+    for figure, (_, file, before, key) in FIGURES.items():
+        old = rows[file][before] if file == "trackers" else rows[file][before][PREDICTOR]
+        new = rows[file][f"{before}_with_{PREDICTOR}"] if file == "trackers" else tuned
+        row |= {f"{figure}_before": old[key], f"{figure}_after": new[key]}
+    return row
+
+
+def page(table: Mapping[str, Row], names: Sequence[str]) -> str:
+    """The table, and which of the sets `names` have not run."""
+    heads = [head for words, *_ in FIGURES.values() for head in (f"{words} before", "after")]
+    columns = ["set", "used", *heads, "commit"]
+    rows = [line([f"`{name}`", number(row["used"]), *_cells(row), row["commit"]]) for name, row in table.items()]
+    lacking = [f"`{name}`" for name in names if name not in table]
+    told = [f"Not run yet: {', '.join(lacking)}.\n"] if lacking else []
+    shown = [line(columns) + line(["---", "---", *["---:"] * len(heads), "---"]) + "".join(rows)] if rows else []
+    return "\n".join([HEAD, *shown, *told])
+
+
+def _cells(row: Row) -> list[str]:
+    return [number(row[f"{figure}_{when}"]) for figure in FIGURES for when in ("before", "after")]

@@ -1,0 +1,1 @@
+"""Tracker and predictor, each learned alone, learn from each other."""
