@@ -6,9 +6,10 @@ from physpipe.core import params
 from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams
 from physpipe.report import ablation
+from physpipe.report.evidence import Sources, gather
 from physpipe.report.page import write_page
 from physpipe.report.params import ReportParams
-from physpipe.report.run import RunParams, Sources, gather
+from physpipe.report.run import RunParams
 from physpipe.report.tables import save_metrics
 from physpipe.tracknet.signals import LockParams
 

@@ -10,13 +10,12 @@ import numpy as np
 import pandas as pd
 from flask import Flask, Response, abort, request
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, ValidationError
-from werkzeug.exceptions import HTTPException
+from pydantic import BaseModel, ConfigDict
 
-from physpipe.annotator import guard, states
+from physpipe.annotator import guard, refusals, states
 from physpipe.annotator.answers import Answers, referenced
 from physpipe.annotator.states import ClipState
-from physpipe.annotator.store import StaleError, Store
+from physpipe.annotator.store import Store
 from physpipe.core.errors import InputError
 from physpipe.trackers.base import Trajectory
 
@@ -58,7 +57,7 @@ def create_app(desk: Desk, address: str) -> Flask:
     app.config["MAX_CONTENT_LENGTH"] = LARGEST_BODY
     app.url_map.merge_slashes = False
     guard.install(app, address)
-    _add_errors(app)
+    refusals.install(app)
     _add_reading(app, desk)
     _add_changing(app, desk)
     return app
@@ -123,27 +122,6 @@ def _add_changing(app: Flask, desk: Desk) -> None:
                 410, "another data set is served here by now: serve the one of this page again, or open the page anew"
             )
         return {"revision": desk.store.save(name, wanted.state, wanted.revision).revision}
-
-
-def _add_errors(app: Flask) -> None:
-    """Every refusal is JSON with one sentence, which the page shows as it is."""
-
-    @app.errorhandler(InputError)
-    def unusable(error: InputError) -> tuple[dict[str, Any], int]:
-        return {"error": str(error)}, 422
-
-    @app.errorhandler(ValidationError)
-    def malformed(error: ValidationError) -> tuple[dict[str, Any], int]:
-        faults = [f"`{'.'.join(map(str, each['loc']))}`: {each['msg']}" for each in error.errors()]
-        return {"error": f"not an annotation: {'; '.join(faults[:5])}"}, 422
-
-    @app.errorhandler(StaleError)
-    def stale(error: StaleError) -> tuple[dict[str, Any], int]:
-        return {"error": str(error), "revision": error.now.revision, "state": error.now.model_dump()}, 409
-
-    @app.errorhandler(HTTPException)
-    def refused(error: HTTPException) -> tuple[dict[str, Any], int]:
-        return {"error": error.description}, error.code or 500
 
 
 def _body(kind: type[Body]) -> Body:

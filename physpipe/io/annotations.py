@@ -10,6 +10,14 @@ import pandas as pd
 
 from physpipe.core.errors import InputError
 from physpipe.io import handwritten
+from physpipe.io.annotation_faults import (
+    Faults,
+    cell_faults,
+    correction_faults,
+    outside,
+    reference_faults,
+    template_faults,
+)
 from physpipe.io.clips import ClipSet
 
 TEMPLATES, CORRECTIONS, REFERENCE = "templates.csv", "corrections.csv", "reference.csv"
@@ -18,11 +26,7 @@ COLUMNS = {
     CORRECTIONS: ["clip", "object", "frame", "x", "y", "visible"],
     REFERENCE: ["source", "object", "frame", "x", "y"],
 }
-SMALLEST = 3
-"""Pixels that a template must span: fewer hold no pattern."""
 VISIBLE = {"true": 1, "1": 1, "yes": 1, "false": 0, "0": 0, "no": 0}
-Faults = dict[str, pd.Series]
-"""What is wrong -> which rows are, as a boolean column."""
 
 
 class Box(NamedTuple):
@@ -73,9 +77,9 @@ def load(folder: Path, clips: ClipSet) -> Annotations:
     Raises InputError naming every bad line of a file at once: a missing column, something that is no number, an
     unknown clip, a frame or a position beyond its clip, a template outside its frame.
     """
-    templates = _read(folder / TEMPLATES, clips, _template_faults)
-    corrections = _read(folder / CORRECTIONS, clips, _correction_faults)
-    reference = _read(folder / REFERENCE, clips, _reference_faults)
+    templates = _read(folder / TEMPLATES, clips, template_faults)
+    corrections = _read(folder / CORRECTIONS, clips, correction_faults)
+    reference = _read(folder / REFERENCE, clips, reference_faults)
     return Annotations(templates, corrections, _on_clips(reference, clips))
 
 
@@ -89,7 +93,7 @@ def _read(path: Path, clips: ClipSet, find_faults: Callable[[pd.DataFrame, ClipS
     for name in columns[1:]:
         plain = words[name].str.lower().map(VISIBLE) if name == "visible" else words[name]
         table[name] = pd.to_numeric(plain, errors="coerce")
-    _refuse(path, _cell_faults(table, words) | find_faults(table, clips))
+    _refuse(path, cell_faults(table, words) | find_faults(table, clips))
     return table.astype({"object": np.int64, "frame": np.int64})
 
 
@@ -105,61 +109,6 @@ def _refuse(path: Path, faults: Faults) -> None:
         raise InputError(path, "; ".join(said), "correct these lines")
 
 
-def _cell_faults(table: pd.DataFrame, words: pd.DataFrame) -> Faults:
-    """Cells that cannot be read; x and y may be blank together, where an object is out of sight."""
-    faults = {}
-    for name in [name for name in ("object", "frame", "x", "y", "w", "h") if name in table]:
-        blank = (words["x"] == "") & (words["y"] == "") if name in ("x", "y") else False
-        faults[f"`{name}` is not a number"] = ~(np.isfinite(table[name]) | blank)
-    for name in ("object", "frame"):
-        faults[f"`{name}` is not 0, 1, 2 ..."] = (table[name] < 0) | (table[name] % 1 > 0)
-    if "visible" in table:
-        faults["`visible` is not true or false"] = table["visible"].isna()
-    faults["repeats an earlier line"] = table.duplicated([table.columns[0], "object", "frame"])
-    return faults
-
-
-def _clip_faults(table: pd.DataFrame, clips: ClipSet) -> tuple[Faults, pd.DataFrame]:
-    """Rows of no clip or no frame of it, and the size of each row's clip: frames, width, height."""
-    by_clip = clips.table.groupby("clip")
-    size = by_clip[["width", "height"]].first().assign(frames=by_clip.size())
-    size = size.reindex(table["clip"]).set_index(table.index)
-    return {"no such clip": size["frames"].isna(), "frame beyond the clip": table["frame"] >= size["frames"]}, size
-
-
-def _template_faults(table: pd.DataFrame, clips: ClipSet) -> Faults:
-    faults, size = _clip_faults(table, clips)
-    larger = (table["w"] > size["width"]) | (table["h"] > size["height"])
-    right, bottom = table["x"] + table["w"], table["y"] + table["h"]
-    outside = (table["x"] < 0) | (table["y"] < 0) | (right > size["width"]) | (bottom > size["height"])
-    return faults | {
-        "template without a position": table[["x", "y"]].isna().any(axis=1),
-        f"template smaller than {SMALLEST} pixels": (table["w"] < SMALLEST) | (table["h"] < SMALLEST),
-        "template larger than the clip's frame": larger,
-        "template outside the frame": outside & ~larger,
-    }
-
-
-def _correction_faults(table: pd.DataFrame, clips: ClipSet) -> Faults:
-    faults, size = _clip_faults(table, clips)
-    visible = table["visible"] == 1
-    return faults | {
-        "visible without a position": visible & table[["x", "y"]].isna().any(axis=1),
-        "position outside the frame (give clip pixels)": visible & _outside(table, size),
-    }
-
-
-def _reference_faults(table: pd.DataFrame, clips: ClipSet) -> Faults:
-    known = set(clips.table["source"])
-    none = not table["source"].isin(known).any()
-    return {f"`source` is none of the clips' recordings {sorted(known)[:3]}": pd.Series(none, index=table.index)}
-
-
-def _outside(table: pd.DataFrame, size: pd.DataFrame) -> pd.Series:
-    x, y = table["x"], table["y"]
-    return (x < -0.5) | (y < -0.5) | (x > size["width"] - 0.5) | (y > size["height"] - 0.5)
-
-
 def _on_clips(reference: pd.DataFrame, clips: ClipSet) -> pd.DataFrame:
     """Rows of recordings as rows of clips.
 
@@ -172,5 +121,5 @@ def _on_clips(reference: pd.DataFrame, clips: ClipSet) -> pd.DataFrame:
     rows = rows.astype({"x": float, "y": float})
     for clip, mine in rows.groupby("clip"):
         rows.loc[mine.index, ["x", "y"]] = clips.geometry(str(clip)).to_clip(mine[["x", "y"]])
-    rows.loc[_outside(rows, rows), ["x", "y"]] = np.nan
+    rows.loc[outside(rows, rows), ["x", "y"]] = np.nan
     return rows[["clip", "object", "frame", "x", "y", "tag"]]

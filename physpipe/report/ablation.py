@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from physpipe.core.errors import InputError
 from physpipe.io import results
-from physpipe.report.run import Row
+from physpipe.report.evidence import Row
 
 TITLES = {
     "losses": "Each combination of the paper's losses, and a tracker that always says the frame's centre (const)",

@@ -9,9 +9,10 @@ from physpipe.core.horizon import BASELINES
 from physpipe.report import colours
 from physpipe.report.coverage import coverage, coverage_charts
 from physpipe.report.curves import error_distributions
+from physpipe.report.evidence import Evidence
 from physpipe.report.glossary import LOSSES
 from physpipe.report.line import Chart, line
-from physpipe.report.run import SUPERVISIONS, TUNED, Evidence
+from physpipe.report.run import SUPERVISIONS, TUNED
 
 STEEP = 30
 """A positive curve whose largest value is so many times its smallest gets a logarithmic axis."""

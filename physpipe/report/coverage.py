@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from physpipe.metrics.predictors import squared_mahalanobis
 from physpipe.report import colours
+from physpipe.report.evidence import Evidence
 from physpipe.report.line import Chart, line
 from physpipe.report.pairs import missed
-from physpipe.report.run import Evidence
 
 MULTIPLES = {"T": 1, "2T": 2}
 """Where it is told, in units of T."""

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
+from physpipe.report.evidence import Evidence, Row
 from physpipe.report.paper import predictor_rows, tracker_rows
-from physpipe.report.run import TUNED, Evidence, Row
+from physpipe.report.run import TUNED
 
 TRACKER_COLUMNS = {
     "mean_px": "mean px",

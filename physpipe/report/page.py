@@ -13,6 +13,7 @@ from markupsafe import Markup
 from physpipe.core.progress import progress
 from physpipe.io.atomic import replacing_folder
 from physpipe.report import ablation, charts, colours
+from physpipe.report.evidence import Evidence, Row
 from physpipe.report.glossary import glossary
 from physpipe.report.headlines import PREDICTOR_COLUMNS, TRACKER_COLUMNS, TUNING_WORDS, headlines, known_columns
 from physpipe.report.heat import heat_columns
@@ -20,7 +21,6 @@ from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
 from physpipe.report.params import ReportParams
 from physpipe.report.plate import plate
 from physpipe.report.playing import excerpts, film, shown_clips
-from physpipe.report.run import Evidence, Row
 from physpipe.report.spans import doubtful_spans
 from physpipe.report.stills import stills
 from physpipe.report.verdict import verdict

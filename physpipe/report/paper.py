@@ -5,7 +5,7 @@ from typing import Any
 
 import yaml
 
-from physpipe.report.run import Evidence, Row
+from physpipe.report.evidence import Evidence, Row
 
 PAPER = "paper_"
 

@@ -9,10 +9,10 @@ from pydantic import Field
 from physpipe.core.params import Section
 from physpipe.report.brushes import Picture
 from physpipe.report.embedding import webp
+from physpipe.report.evidence import Evidence
 from physpipe.report.overlays import marks_of
 from physpipe.report.pairs import missed
 from physpipe.report.paths import background, draw_paths
-from physpipe.report.run import Evidence
 from physpipe.report.stills import QUALITY
 
 COLUMNS = 6

@@ -11,9 +11,9 @@ from pydantic import Field
 
 from physpipe.core.params import Section
 from physpipe.report.brushes import CHI2_90
+from physpipe.report.evidence import Evidence
 from physpipe.report.listing import listed
 from physpipe.report.overlays import marks_of
-from physpipe.report.run import Evidence
 from physpipe.report.spans import nearest_px
 from physpipe.report.strips import strip
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physpipe.report.embedding import webp
+from physpipe.report.evidence import Evidence
 from physpipe.report.overlays import Marks, draw, marks_of
-from physpipe.report.run import Evidence
 from physpipe.report.spans import nearest_px
 
 QUALITY = 80

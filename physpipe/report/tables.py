@@ -8,8 +8,8 @@ import pandas as pd
 
 from physpipe.io import results
 from physpipe.report.curves import error_distributions
+from physpipe.report.evidence import Evidence
 from physpipe.report.paper import calibration_row, predictor_rows, tracker_rows
-from physpipe.report.run import Evidence
 
 CURVE_COLUMNS = ["dataset", "supervision", "predictor", "frame", "error_px"]
 DISTRIBUTION_COLUMNS = ["dataset", "tracker", "error_px", "share"]

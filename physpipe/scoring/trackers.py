@@ -1,7 +1,6 @@
 """Figures per tracker from track tables and the truth, test split only."""
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -17,6 +16,7 @@ from physpipe.metrics import identity
 from physpipe.metrics import trackers as metrics
 from physpipe.metrics.identity import Tracked
 from physpipe.metrics.trackers import OtherMotionParams
+from physpipe.scoring.tracker_cases import Case, annotated_cases, errors_of, matched
 
 ERRORS = ["tracker", "clip", "object", "frame", "error_px"]
 
@@ -35,18 +35,6 @@ class EvaluateTrackersParams(Section):
     other_motion: OtherMotionParams
 
 
-class Case(NamedTuple):
-    """One annotated test clip."""
-
-    clip: str
-    truth: NDArray[np.floating]
-    """(T, K, 2) pixels."""
-    disturbed: NDArray[np.bool_]
-    """(T,) frames counted apart, since something else moves in them."""
-    width: int
-    height: int
-
-
 def score_trackers(
     clips: ClipSet,
     truth: pd.DataFrame,
@@ -62,13 +50,13 @@ def score_trackers(
     objects best over a clip, one to one: a track too many is passed over, an object without a track is lost. Figures of
     identity count both, and are null for one object.
     """
-    cases = _cases(clips, truth, params.other_motion, ball.ball_radius_px)
+    cases = annotated_cases(clips, truth, params.other_motion, ball.ball_radius_px)
     figures: dict[str, dict[str, float | bool | None]] = {}
     rows = []
     for name, table in progress(tables.items(), "errors of trackers"):
         known = tracks.by_clip(table)
-        found = [_matched(known.get(case.clip), case) for case in cases]
-        errors = _errors(found, cases)
+        found = [matched(known.get(case.clip), case) for case in cases]
+        errors = errors_of(found, cases)
         figures[name] = {
             **_figures(found, cases, errors, params, ball),
             **_identity(known, tracks.ambiguous(table), cases, 2 * ball.ball_radius_px),
@@ -76,40 +64,6 @@ def score_trackers(
         }
         rows.append(errors.assign(tracker=name)[ERRORS])
     return figures, pd.concat(rows, ignore_index=True)
-
-
-def _cases(clips: ClipSet, truth: pd.DataFrame, other: OtherMotionParams, radius_px: float) -> list[Case]:
-    """The annotated test clips; frames count as disturbed by the user's tags or, if there are none, by what moves."""
-    tags = truth.loc[truth["tag"] != ""] if "tag" in truth else truth.iloc[:0]
-    cases = []
-    tested = {clip: xy for clip, xy in tracks.by_clip(truth).items() if clips.split(clip) == "test"}
-    for clip, xy in progress(tested.items(), "what else moves"):
-        frames = clips.frames(clip)
-        if len(tags):
-            disturbed = np.isin(np.arange(len(xy)), tags.loc[tags["clip"] == clip, "frame"])
-        else:
-            disturbed = metrics.other_motion(frames, xy, radius_px, other)
-        cases.append(Case(clip, xy, disturbed, frames.shape[2], frames.shape[1]))
-    return cases
-
-
-def _matched(found: NDArray[np.floating] | None, case: Case) -> NDArray[np.floating]:
-    """(T, K, 2) tracks in the truth's order of objects; a clip without tracks is lost throughout."""
-    return np.full(case.truth.shape, np.nan) if found is None else metrics.match(found, case.truth)
-
-
-def _errors(found: list[NDArray[np.floating]], cases: list[Case]) -> pd.DataFrame:
-    """One row for each visible object: clip, object, frame, x and y offset, error_px, disturbed."""
-    parts = []
-    for xy, case in zip(found, cases, strict=True):
-        frame, obj = np.nonzero(np.isfinite(case.truth).all(axis=2))
-        offset = (xy - case.truth)[frame, obj].astype(np.float64)
-        columns = {"object": obj, "frame": frame, "x": offset[:, 0], "y": offset[:, 1]}
-        parts.append(pd.DataFrame({"clip": case.clip, **columns, "disturbed": case.disturbed[frame]}))
-    if not parts:
-        return pd.DataFrame(columns=["clip", "object", "frame", "x", "y", "disturbed", "error_px"], dtype=float)
-    table = pd.concat(parts).sort_values(tracks.KEY, ignore_index=True)
-    return table.assign(error_px=np.hypot(table["x"], table["y"]))
 
 
 def _figures(

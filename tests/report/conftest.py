@@ -11,11 +11,12 @@ import pytest
 from physpipe.core.geometry import Geometry
 from physpipe.core.horizon import BASELINES
 from physpipe.io import clips, forecasts, results, tracks
+from physpipe.report.evidence import Evidence, Sources, gather
 from physpipe.report.page import write_page
 from physpipe.report.params import ReportParams
 from physpipe.report.plate import PlateParams
 from physpipe.report.playing import FilmParams
-from physpipe.report.run import Evidence, RunParams, Sources, gather
+from physpipe.report.run import RunParams
 from physpipe.tracknet.signals import LockParams
 
 LOCK = LockParams(order_accuracy=0.8, siamese_px=3.0, entropy_nats=3.0, motion_share=0.3, extent_px=0.5)

@@ -10,7 +10,7 @@ import pytest
 from physpipe.core.errors import InputError
 from physpipe.io import results
 from physpipe.report import paper
-from physpipe.report.run import gather
+from physpipe.report.evidence import gather
 from physpipe.report.tables import save_metrics, summary
 
 
