@@ -11,7 +11,7 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +54,11 @@ def kept(known: Table, new: Table) -> Table:
     return {name: {**known.get(name, {}), **_as_sure(known.get(name, {}), new.get(name, {}))} for name in names}
 
 
+def ordered(table: Table, names: Sequence[str]) -> Table:
+    """The table's data sets in the order of `names`, others after them."""
+    return {name: table[name] for name in dict.fromkeys([*names, *table]) if name in table}
+
+
 def _as_sure(known: Mapping[str, Row], new: Mapping[str, Row]) -> dict[str, Row]:
     return {key: row for key, row in new.items() if len(row["seeds"]) >= len(known.get(key, {"seeds": ()})["seeds"])}
 
@@ -87,10 +92,11 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit("stopped; the same command goes on from here")
     speed = _known(SPEED) or {"rates": {}}
-    trackers = kept(_known(FOLDER / "trackers.json"), tracker_runs.collect(followed, results, speed["rates"]))
+    measured = tracker_runs.collect(followed, results, speed["rates"])
+    trackers = ordered(kept(_known(FOLDER / "trackers.json"), measured), names)
     before, new = _known(FOLDER / "predictors.json"), forecast_runs.collect(forecast, results, seeds[0])
     predictors = {name: kept(before.get(name, {}), new.get(name, {})) for name in {**new, **before}}
-    together = _known(FOLDER / "finetuned.json") | tuning_runs.collect(tuned, results, seeds[0])
+    together = ordered(_known(FOLDER / "finetuned.json") | tuning_runs.collect(tuned, results, seeds[0]), names)
     for name, table in (("trackers", trackers), ("predictors", predictors), ("finetuned", together)):
         _save(name, table)
     unrun = absent | {name: "not run yet" for name in names if name not in trackers}

@@ -5,7 +5,7 @@ from pathlib import Path
 import yaml
 
 from experiments.records import Result
-from experiments.results import kept, runnable
+from experiments.results import kept, ordered, runnable
 from experiments.tables import page, verdict
 from experiments.tracker_runs import collect, experiments
 
@@ -110,3 +110,8 @@ def test_rows_stand_until_they_are_measured_again_with_as_many_seeds():
     after = kept(before, {"bowls": {"lab": new, "centre": fewer, "flow_blob": fewer}})
     assert after["bowls"] == {"lab": new, "knn_blob": old, "centre": old, "flow_blob": fewer}
     assert after["tray"] == before["tray"]
+
+
+def test_sets_stand_in_one_order_whichever_ran_last():
+    table = {"old": {}, "heights": {}, "bowls": {}}
+    assert list(ordered(table, ["bowls", "bowls2", "heights"])) == ["bowls", "heights", "old"]
