@@ -21,14 +21,14 @@ def main(name: str, predictor: str, clips: Path, found: Path, trained: Path, mod
     predict, compute = read(f"datasets.{name}.predict", PredictParams), read("compute", ComputeParams)
     params, recipe = read("finetune", FinetuneParams), read("tracker", TrackerParams)
     kind = predictor_class(read_value(f"predictors.{predictor}.kind"))
-    learned = read(f"predictors.{predictor}", learned_params(kind))
+    learned = read(f"predictors.{predictor}", learned_params(kind)).on(predict)
     prepare(compute)
     folder = scratch("finetune", [predict, compute, params, recipe, learned], [clips, found, trained, model])
     table, nets = tracks.load(found), detectors.load(trained / detectors.WEIGHTS)
     untuned = load_predictor(model, predictor, tracks.object_count(found, table))
     last = predict.last_frame(learned.trained_to, f"datasets.{name}.predict")
     tuned = tune(
-        ClipSet(clips), table, nets, untuned, last, recipe, learned.windows, params, compute.seed,
+        ClipSet(clips), table, nets, untuned, last, predict.mirrors, recipe, learned.windows, params, compute.seed,
         folder / "training.pt",
     )  # fmt: skip
     print(f"{name}, {predictor}: {'better, shipped' if tuned.gained else 'not better, the former two stay'}")

@@ -16,12 +16,13 @@ def main(name: str, predictor: str, clips: Path, found: Path, out: Path) -> None
     """Writes `weights.pt` and `curve.csv` to the folder `out`; data set `name` says how far to forecast."""
     predict, compute = read(f"datasets.{name}.predict", PredictParams), read("compute", ComputeParams)
     kind = predictor_class(read_value(f"predictors.{predictor}.kind"))
-    params = read(f"predictors.{predictor}", learned_params(kind))
+    params = read(f"predictors.{predictor}", learned_params(kind)).on(predict)
     last_frame = predict.last_frame(params.trained_to, f"datasets.{name}.predict")
     prepare(compute)
     folder = scratch("train_predictor", [predict, compute, params], [clips, found])
+    film, table, checkpoint = ClipSet(clips), tracks.load(found), folder / "training.pt"
     learned, curve = learn_predictor(
-        predictor, params, ClipSet(clips), tracks.load(found), last_frame, compute.seed, folder / "training.pt"
+        predictor, params, film, table, last_frame, predict.mirrors, compute.seed, checkpoint
     )
     save_predictor(out, predictor, learned, params, curve)
     forget(folder)

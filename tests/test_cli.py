@@ -42,6 +42,7 @@ datasets:
     predict:
       horizon: 14
       interpolation: null
+      mirrors: false
 """
 
 

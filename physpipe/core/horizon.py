@@ -15,12 +15,14 @@ TrainedTo = Literal["horizon", "interpolation"]
 
 
 class PredictParams(Section):
-    """How far a data set's motion is forecast."""
+    """How a data set's motion is forecast, and how far."""
 
     horizon: int = Field(ge=1)
     """T: the last frame that predictors learn to forecast, the first seen one being frame 0."""
     interpolation: int | None = Field(ge=1)
     """The same for predictors that are trained longer, or see that frame; empty where the clips are too short."""
+    mirrors: bool
+    """Whether film of this set, mirrored or turned, could be film of this set, too, and is learned from."""
 
     def last_frame(self, trained_to: TrainedTo, section: str) -> int:
         """The last frame that a training reaches; raises InputError when `section` (self's key) leaves it empty."""

@@ -75,6 +75,7 @@ def tune(
     nets: list[TrackNet],
     predictor: Predictor,
     horizon: int,
+    mirrors: bool,
     tracker: TrackerParams,
     windows: WindowParams,
     params: FinetuneParams,
@@ -83,16 +84,18 @@ def tune(
 ) -> Tuned:
     """Tunes copies of both on the training clips; `table` holds the unsupervised tracks, refined.
 
-    `windows`: what the predictor is shown when it learns alone. Raises InputError for several detectors of one object
-    each, whose masks depend on each other.
+    `windows`: what the predictor is shown when it learns alone, mirrored or not as `mirrors` says. Raises InputError
+    for several detectors of one object each, whose masks depend on each other.
     """
     if len(nets) > 1:
         reason = f"{len(nets)} detectors, each learned with the earlier ones' objects masked"
         raise InputError("params.yaml: run.finetuned", reason, "use `tracker.recipe: joint`: one detector finds all")
     net, size, looks = nets[0], params.fit.batch_size, params.agreement.looks
     seen, ends = predictor.seen_frames, predictor.sees_end
-    train = TrackWindows(clips, table, "train", seen, horizon, ends)
-    alone = TrackWindows(clips, table, "train", seen, horizon, ends, True) if predictor.steadies else train
+    train, alone = (
+        TrackWindows(clips, table, "train", seen, horizon, ends, steady, mirrors)
+        for steady in (False, predictor.steadies)
+    )
     valid = TrackWindows(clips, table, "valid", seen, horizon, ends)
     held_out = evenly(valid, params.held_out, looks, size)
     task = lesson(clips, tracker)

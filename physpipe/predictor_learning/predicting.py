@@ -1,14 +1,14 @@
 """Learning a predictor from tracks, keeping it in a file, and taking it out again."""
 
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Generic, Self, TypeVar
 
 import pandas as pd
 import torch
 from pydantic import ValidationError
 
 from physpipe.core.errors import InputError
-from physpipe.core.horizon import TrainedTo
+from physpipe.core.horizon import PredictParams, TrainedTo
 from physpipe.core.params import Section
 from physpipe.io import checkpoints, results
 from physpipe.io.clips import ClipSet
@@ -41,6 +41,12 @@ class LearnedParams(Section, Generic[Model]):
     windows: WindowParams
     fit: FitParams
 
+    def on(self, predict: PredictParams) -> Self:
+        """As it learns a set of that section: no forecast is a mean over mirrors of film that could not be mirrored."""
+        if predict.mirrors or "symmetric" not in type(self.model).model_fields:
+            return self
+        return self.model_copy(update={"model": self.model.model_copy(update={"symmetric": False})})
+
 
 def learned_params(kind: type[Predictor]) -> type[LearnedParams]:
     """The section's class for that class of predictors."""
@@ -53,15 +59,17 @@ def learn_predictor(
     clips: ClipSet,
     table: pd.DataFrame,
     last_frame: int,
+    mirrors: bool,
     seed: int,
     checkpoint: Path,
 ) -> tuple[Predictor, pd.DataFrame]:
     """The predictor with the weights that forecast the validation clips best, and its learning curve.
 
-    `last_frame`: the last one that it learns to forecast. Raises InputError when no window can be learned from.
+    `last_frame`: the last one that it learns to forecast; `mirrors`: whether it learns from mirrored film, too. Raises
+    InputError when no window can be learned from.
     """
     kind = predictor_class(params.kind)
-    train = TrackWindows(clips, table, "train", kind.seen_frames, last_frame, kind.sees_end, kind.steadies)
+    train = TrackWindows(clips, table, "train", kind.seen_frames, last_frame, kind.sees_end, kind.steadies, mirrors)
     valid = TrackWindows(clips, table, "valid", kind.seen_frames, last_frame, kind.sees_end)
     print(f"{name}: {len(train)} windows to learn from; {train.skipped} left out, an object is lost in them")
     predictor = kind(params.model, train.objects)

@@ -39,9 +39,10 @@ class TrackWindows:
     """Every stretch of `horizon` + 1 frames of one split whose positions are all known.
 
     With `sees_end` the last frame of a stretch is seen too. With `steady` the camera's motion is taken off, so that all
-    positions are as in the last frame that is seen with those before. Raises InputError when no clip is so long, when
-    the predictor sees so many frames that none is left to forecast, when clips differ in size or number of objects, or
-    when the tracks lack a clip.
+    positions are as in the last frame that is seen with those before. With `mirrors` what is drawn is mirrored at
+    random, and turned where frames are square. Raises InputError when no clip is so long, when the predictor sees so
+    many frames that none is left to forecast, when clips differ in size or number of objects, or when the tracks lack a
+    clip.
     """
 
     def __init__(
@@ -53,8 +54,9 @@ class TrackWindows:
         horizon: int,
         sees_end: bool = False,
         steady: bool = False,
+        mirrors: bool = True,
     ):
-        self.seen_frames, self.horizon = seen_frames, horizon
+        self.seen_frames, self.horizon, self.mirrors = seen_frames, horizon, mirrors
         self.seen = [*range(seen_frames), horizon] if sees_end else list(range(seen_frames))
         """Numbers of the seen frames within a stretch."""
         if horizon < seen_frames:
@@ -100,11 +102,11 @@ class TrackWindows:
         return Window(seen, times[:, -asked:], xy[:, T0:])
 
     def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
-        """`count` random windows, randomly mirrored (and turned, if square), with noise on the seen positions."""
+        """`count` random windows, mirrored or not, with noise on the seen positions."""
         numbers = self.pick(count, params.first_share, generator)
         flips = torch.randint(2, (count, 3), generator=generator).bool()
         flips[:, 2] &= self.height == self.width
-        drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()])
+        drawn = self.batch(numbers, [tuple(each) for each in flips.tolist()] if self.mirrors else None)
         noise = torch.randn(drawn.seen.xy.shape, generator=generator).to(device()) * params.noise_px
         return replace(drawn, seen=replace(drawn.seen, xy=drawn.seen.xy + noise))
 

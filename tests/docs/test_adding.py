@@ -126,7 +126,10 @@ def test_an_added_predictor_learns_a_step_and_forecasts(copy, paths):
     assert "coasting" in params["run"]["learned"]
     section = params["predictors"]["coasting"]
     small = section | {"fit": section["fit"] | {"steps": 1, "valid_every": 1, "batch_size": 2}}
-    copy.edit(predictors={"coasting": small}, datasets={"bowls": {"predict": {"horizon": 6, "interpolation": None}}})
+    copy.edit(
+        predictors={"coasting": small},
+        datasets={"bowls": {"predict": {"horizon": 6, "interpolation": None, "mirrors": False}}},
+    )
     known = "bowls coasting data/clips/bowls data/truth/bowls.parquet model"
     copy.run(f"train_predictor {known}", f"forecast {known} ahead.parquet")
     table = forecasts.load(copy.root / "ahead.parquet")

@@ -32,7 +32,17 @@ BEFORE = State(unlocked=False, score=0.3, tracker_px=0.5, forecast_px=2.0)
 
 def tuned(pair, checkpoint, params=PARAMS, nets=None):
     return tune(
-        pair.clips, pair.table, nets or [pair.net], pair.predictor, 8, pair.tracker, WINDOWS, params, 0, checkpoint
+        pair.clips,
+        pair.table,
+        nets or [pair.net],
+        pair.predictor,
+        8,
+        True,
+        pair.tracker,
+        WINDOWS,
+        params,
+        0,
+        checkpoint,
     )
 
 

@@ -48,7 +48,7 @@ def params_of(kind):
 
 def learn(kind, found, table, checkpoint, last_frame=HORIZON):
     torch.manual_seed(0)
-    return learn_predictor(f"{kind}_x", params_of(kind), found, table, last_frame, 1, checkpoint)
+    return learn_predictor(f"{kind}_x", params_of(kind), found, table, last_frame, True, 1, checkpoint)
 
 
 @pytest.mark.parametrize("name", MODELS)

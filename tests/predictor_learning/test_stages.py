@@ -7,6 +7,7 @@ import yaml
 
 from physpipe.core.errors import InputError
 from physpipe.io import forecasts, tracks
+from physpipe.predictor_learning.predicting import load_predictor
 from stages import forecast, train_predictor
 
 ROOT = Path(__file__).parents[2]
@@ -25,7 +26,7 @@ def project(tmp_path, monkeypatch, falling_balls):
         section["windows"]["valid_windows"] = 2
     params = {
         "compute": {"seed": 0, "threads": 1},
-        "datasets": {"balls": {"predict": {"horizon": HORIZON, "interpolation": END}}},
+        "datasets": {"balls": {"predict": {"horizon": HORIZON, "interpolation": END, "mirrors": True}}},
         "predictors": predictors,
     }
     Path("params.yaml").write_text(yaml.safe_dump(params))
@@ -54,3 +55,12 @@ def test_a_set_without_interpolation_refuses_what_is_trained_to_it(project):
     Path("params.yaml").write_text(yaml.safe_dump(project))
     with pytest.raises(InputError, match=r"`datasets\.balls\.predict\.interpolation`: is empty"):
         run("interpnet")
+
+
+@pytest.mark.parametrize("mirrors", [True, False])
+def test_a_forecast_is_a_mean_over_mirrors_only_where_film_could_be_mirrored(project, mirrors):
+    assert project["predictors"]["dispnet"]["model"]["symmetric"]
+    project["datasets"]["balls"]["predict"]["mirrors"] = mirrors
+    Path("params.yaml").write_text(yaml.safe_dump(project))
+    run("dispnet")
+    assert load_predictor(Path("model"), "dispnet", 1).symmetric is mirrors

@@ -196,3 +196,12 @@ def test_clips_with_different_numbers_of_objects_are_an_input_error(tmp_path):
     fewer = table[(table["clip"] != "c1") | (table["object"] == 0)]
     with pytest.raises(InputError, match="objects"):
         TrackWindows(found, fewer, "train", 4, 8)
+
+
+def test_film_that_could_not_be_mirrored_is_drawn_as_it_is(tmp_path):
+    found = windows(tmp_path / "set", height=20, width=20)
+    found.mirrors = False
+    numbers = found.pick(32, drawing().first_share, torch_generator(3))
+    drawn = found.draw(32, drawing(), torch_generator(3))
+    assert torch.equal(drawn.seen.frames, found.batch(numbers).seen.frames)
+    assert torch.equal(drawn.target, found.batch(numbers).target)
