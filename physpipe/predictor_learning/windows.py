@@ -72,6 +72,7 @@ class TrackWindows:
             raise InputError(clips.folder / TABLE, f"no tracks of clip {lacking[0]}", "make the tracks again")
         self.frames = [clips.frames(name) for name in names]
         self.xy = [known[name] for name in names]
+        self.frames_per_s = float(1 / np.median([np.diff(clips.times_s(name)).mean() for name in names]))
         self.camera = self._camera_paths() if steady else None
         """Of each clip, (T, 2) px by which the still scene has shifted since the first frame; None: not taken off."""
         whole = [_whole(xy, horizon + 1) for xy in self.xy]
@@ -99,7 +100,7 @@ class TrackWindows:
         times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
         frames = as_input(np.stack([frames for frames, _ in cut]))
         seen = Seen(frames, xy[:, :T0], times[:, self.seen], steady=self.camera is not None)
-        return Window(seen, times[:, -asked:], xy[:, T0:])
+        return Window(seen, times[:, -asked:], xy[:, T0:], self.frames_per_s)
 
     def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
         """`count` random windows, mirrored or not, with noise on the seen positions."""

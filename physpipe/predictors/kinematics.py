@@ -14,6 +14,8 @@ FASTEST = 1.0
 """Largest displacement a frame along x and y: nothing that can be followed is as fast."""
 FURTHEST = 1.0
 """Largest distance from the frame's centre along x and y: its edge."""
+FEWEST = 5
+"""Frames, odd, over which a cubic still smooths."""
 POWERS = 6
 """Terms of a quadratic form in a displacement: 1, x, y, x^2, x y, y^2."""
 
@@ -65,6 +67,11 @@ def smoothed(path: Tensor, frames: int) -> tuple[Tensor, Tensor, Tensor]:
     cubics = (path.new_tensor(savgol_coeffs(width, 3, deriv=order, use="dot")) for order in range(3))
     place, speed, turn = ((around * each).sum(-1) for each in cubics)  # a matrix product would round
     return place, speed - turn / 2, turn
+
+
+def odd(frames: float) -> int:
+    """The odd number of frames nearest to `frames`, and no fewer than a cubic is smoothed over."""
+    return max(FEWEST, 2 * round((frames - 1) / 2) + 1)
 
 
 def at(path: Tensor, ahead: Tensor) -> Tensor:

@@ -10,12 +10,12 @@ matched, place by place, to the changes of velocity along smoothed tracks; then 
 """
 
 import torch
-from pydantic import Field, field_validator
+from pydantic import Field
 from torch import Tensor, nn
 
 from physpipe.core.params import Section
 from physpipe.predictors.base import Forecast, Predictor, Seen, Window, distance_px
-from physpipe.predictors.kinematics import at, mended, past, smoothed
+from physpipe.predictors.kinematics import at, mended, odd, past, smoothed
 from physpipe.predictors.layers import FrameUnit, zero_reader
 from physpipe.predictors.steadying import steadied
 from physpipe.predictors.symmetry import mean_over_symmetries
@@ -35,21 +35,14 @@ class TerrainParams(Section):
     """Numbers that describe an object."""
     matched_steps: int = Field(ge=0)
     """Training steps in which the law is matched to smoothed tracks, before forecasts are trained."""
-    matched_weight: float = Field(ge=0)
-    """Frames squared, weight of the match in the steps after them: changes of velocity against positions."""
-    smoothing_frames: int = Field(ge=5)
-    """Frames, odd, that a track is smoothed over for it, by a cubic; fewer where fewer are asked for."""
+    matched_weight_s2: float = Field(ge=0)
+    """Seconds squared, weight of the match in the steps after them: accelerations against positions."""
+    smoothing_s: float = Field(gt=0)
+    """Seconds that a track is smoothed over for it, by a cubic: 5 frames or more, fewer where fewer are asked for."""
     spread_rounds: int = Field(ge=0)
     """Steps of fitting the covariance; 0 = forecasts have none."""
     symmetric: bool
     """Whether a forecast is the mean over all mirrors and turns of the frame; training sees one at a time."""
-
-    @field_validator("smoothing_frames")
-    @classmethod
-    def _odd(cls, frames: int) -> int:
-        if frames % 2 == 0:
-            raise ValueError(f"{frames} frames have none in the middle; give an odd number")
-        return frames
 
 
 class Terrain(Predictor):
@@ -88,7 +81,7 @@ class Terrain(Predictor):
         scene, places = self._look(steadied(batch.seen))
         unit = FrameUnit.of(batch.seen.frames)
         track = torch.cat([places, unit.from_px(batch.target)], dim=1)
-        mismatch = self._mismatch(scene, track, unit)
+        mismatch = self._mismatch(scene, track, unit, batch.frames_per_s)
         parts = {"train_change_px": mismatch.item()}
         self.steps += 1
         if self.steps <= self.params.matched_steps:
@@ -96,11 +89,11 @@ class Terrain(Predictor):
         path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1])
         distance = distance_px(unit.to_px(path), batch.target)
         parts["train_last_px"] = distance[:, -1].mean().item()
-        return distance.mean() + self.params.matched_weight * mismatch, parts
+        return distance.mean() + self.params.matched_weight_s2 * batch.frames_per_s**2 * mismatch, parts
 
-    def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit) -> Tensor:
+    def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit, frames_per_s: float) -> Tensor:
         """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame."""
-        place, velocity, turn = smoothed(track, self.params.smoothing_frames)
+        place, velocity, turn = smoothed(track, odd(self.params.smoothing_s * frames_per_s))
         found = self.law(scene, Motion(place, velocity)).velocity - velocity
         return distance_px(unit.px * found, unit.px * turn).mean()
 

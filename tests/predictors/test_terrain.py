@@ -8,6 +8,7 @@ from springs import losses_by_learning
 
 from physpipe.core.determinism import torch_generator
 from physpipe.predictors.base import Seen, Window
+from physpipe.predictors.kinematics import odd
 from physpipe.predictors.terrain import Terrain, TerrainParams
 
 HEIGHT, WIDTH = 40, 48
@@ -16,8 +17,8 @@ SMALL = TerrainParams(
     hidden=32,
     code=2,
     matched_steps=0,
-    matched_weight=0,
-    smoothing_frames=5,
+    matched_weight_s2=0,
+    smoothing_s=0.06,
     spread_rounds=40,
     symmetric=True,
 )
@@ -81,7 +82,7 @@ def test_an_object_is_pushed_by_another_only_where_there_is_one():
 
 def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():
     window = springs(clips=4, frames=24)
-    net = terrain(matched_steps=300, smoothing_frames=7)
+    net = terrain(matched_steps=300, smoothing_s=0.09)
     losses = losses_by_learning(net, lambda step: window, 300, rate=3e-3)
     assert losses[-1] < losses[0] / 10  # px a frame squared
     off = (net.train()(window.seen, window.asked_times).mean - window.target).norm(dim=-1)
@@ -90,9 +91,18 @@ def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():
     assert parts["train_last_px"] == pytest.approx(off[:, -1].mean().item(), abs=1e-2)
 
 
-def test_tracks_are_smoothed_over_an_odd_number_of_frames():
-    with pytest.raises(ValueError, match="8 frames have none in the middle"):
-        TerrainParams(**{**SMALL.model_dump(), "smoothing_frames": 8})
+def test_tracks_are_smoothed_over_the_same_time_at_any_rate_but_over_no_fewer_frames_than_a_cubic_takes():
+    assert [odd(0.11 * rate) for rate in (240, 80, 30, 10)] == [27, 9, 5, 5]
+    assert odd(7.9) == 7
+    assert odd(8.1) == 9
+
+
+def test_the_same_motion_filmed_at_another_rate_is_matched_with_the_same_weight():
+    window = springs(clips=4, frames=24)
+    net = terrain(matched_weight_s2=0.01)
+    at_80, at_160 = (net.loss(replace(window, frames_per_s=rate), torch_generator(0)) for rate in (80.0, 160.0))
+    forecasts = at_80[0].item() - 0.01 * 80**2 * at_80[1]["train_change_px"]
+    assert at_160[0].item() - 0.01 * 160**2 * at_160[1]["train_change_px"] == pytest.approx(forecasts, rel=1e-4)
 
 
 def test_a_shaken_camera_changes_no_forecast_of_the_scene_before_it():
