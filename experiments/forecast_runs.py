@@ -38,6 +38,7 @@ def experiments(
                 f"run.simulated=[{name if 'simulate' in datasets[name] else ''}]",
                 f"run.learned=[{predictor}]",
                 f"run.supervised=[{name if 'truth' in sources else ''}]",
+                "run.finetuned=[]",
                 f"report.predictor={predictor}",
                 f"compute.seed={seed}",
                 ONE_THREAD,

@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
-AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning"]
+AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning", "physpipe/finetuning"]
 """Code that only forecasts depend on: trackers need not be measured again when it changes."""
 ALL = ("physpipe", "stages", "data", "dvc.yaml", "params.yaml")
 CODE = {"trackers": (*ALL, *(f":(exclude){folder}" for folder in AFTER_TRACKS)), "predictors": ALL}
@@ -76,6 +76,7 @@ def tracker_only(dataset: str, seed: int, simulated: bool) -> tuple[str, ...]:
         f"run.simulated=[{dataset if simulated else ''}]",
         "run.learned=[]",
         "run.supervised=[]",
+        "run.finetuned=[]",
         "report.predictor=persistence",
         f"compute.seed={seed}",
         ONE_THREAD,

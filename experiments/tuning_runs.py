@@ -19,8 +19,8 @@ FIGURES = {
 HEAD = f"""# Tracker and predictor tuned together
 
 From docs/results/finetuned.json. `{PREDICTOR}` and the tracker's detector learn on together, without labels
-(`run.finetuned`; docs/pipeline.md says how). "used": whether nothing that is known without labels got worse; where
-something did, the former two stay in use. Errors on test clips, before and after: of detections, of tracks (moved to
+(`run.finetuned`; docs/pipeline.md says how). "kept": whether no figure that is known without labels got worse; where
+one did, the former two stay. Errors on test clips, before and after: of detections, of tracks (moved to
 the objects' middles), of forecasts from those tracks.
 """
 
@@ -52,7 +52,7 @@ def of_trackers(experiment: Experiment) -> Experiment:
 
 
 def collect(wanted: Mapping[str, Experiment], results: Mapping[Experiment, Result], seed: int) -> dict[str, Row]:
-    """Data set to `used` and each of FIGURES, `_before` and `_after`; with commit, seeds, machine, time_s, finished."""
+    """Data set to `kept` and each of FIGURES, `_before` and `_after`; with commit, seeds, machine, time_s, finished."""
     table = {}
     for name, experiment in wanted.items():
         if experiment in results and of_trackers(experiment) in results:
@@ -63,20 +63,26 @@ def collect(wanted: Mapping[str, Experiment], results: Mapping[Experiment, Resul
 
 
 def _row(rows: Mapping[str, Mapping[str, Any]]) -> Row:
-    tuned = rows["predictors"]["tuned"][PREDICTOR]
-    row: Row = {"used": tuned["gained"]}
-    for figure, (_, file, before, key) in FIGURES.items():
-        old = rows[file][before] if file == "trackers" else rows[file][before][PREDICTOR]
-        new = rows[file][f"{before}_with_{PREDICTOR}"] if file == "trackers" else tuned
+    kept = rows["predictors"]["tuning"][PREDICTOR]["gained"]
+    row: Row = {"kept": kept}
+    for figure, (_, file, name, key) in FIGURES.items():
+        block = rows[file]
+        old = block[name] if file == "trackers" else block[name][PREDICTOR]
+        new = old if not kept else _tuned(block, name, file)
         row |= {f"{figure}_before": old[key], f"{figure}_after": new[key]}
+    return row
+
+
+def _tuned(block: Mapping[str, Any], name: str, file: str) -> Mapping[str, Any]:
+    row: Mapping[str, Any] = block[f"{name}_with_{PREDICTOR}"] if file == "trackers" else block["tuned"][PREDICTOR]
     return row
 
 
 def page(table: Mapping[str, Row], names: Sequence[str]) -> str:
     """The table, and which of the sets `names` have not run."""
     heads = [head for words, *_ in FIGURES.values() for head in (f"{words} before", "after")]
-    columns = ["set", "used", *heads, "commit"]
-    rows = [line([f"`{name}`", number(row["used"]), *_cells(row), row["commit"]]) for name, row in table.items()]
+    columns = ["set", "kept", *heads, "commit"]
+    rows = [line([f"`{name}`", number(row["kept"]), *_cells(row), row["commit"]]) for name, row in table.items()]
     lacking = [f"`{name}`" for name in names if name not in table]
     told = [f"Not run yet: {', '.join(lacking)}.\n"] if lacking else []
     shown = [line(columns) + line(["---", "---", *["---:"] * len(heads), "---"]) + "".join(rows)] if rows else []

@@ -26,8 +26,7 @@ def main(name: str, predictor: str, clips: Path, truth: Path, tuned: Path, persi
     forecast, _ = score_predictors(
         film, annotated, {"tuned": tables}, predict.horizon, of_predictors, ball, simulated=None
     )
-    row = {**forecast["tuned"][predictor], "gained": verdict["gained"]}
-    rows = {"trackers": followed, "predictors": {predictor: row}}
+    rows = {"trackers": followed, "predictors": {predictor: forecast["tuned"][predictor]}}
     results.save_json(out, {**rows, "gate": verdict})
 
 

@@ -6,7 +6,7 @@ from physpipe.core.command import run
 from physpipe.core.determinism import ComputeParams, prepare
 from physpipe.core.objects import ObjectsParams
 from physpipe.core.params import read
-from physpipe.io import tracks
+from physpipe.io import results, tracks
 from physpipe.io.clips import ClipSet
 from physpipe.trackers import detectors
 from physpipe.trackers.tables import track_tables
@@ -17,6 +17,9 @@ def main(name: str, clips: Path, trained: Path, out: Path, unrefined: Path) -> N
     tracking = read("tracker.tracking", detectors.TrackingParams)
     objects = read(f"datasets.{name}.motion", ObjectsParams)
     prepare(read("compute", ComputeParams))
+    # A predictor that was tuned with it goes on from as many tracks as it has learned
+    tuned_to = results.load_json(trained / "verdict.json").get("tracks")
+    objects = objects if tuned_to is None else ObjectsParams(objects=tuned_to)
     film, nets = ClipSet(clips), detectors.load(trained / detectors.WEIGHTS)
     after, before = track_tables(film, detectors.together(nets, tracking), objects, tracking.refine)
     tracks.save(out, after, "physpipe unsupervised", film)

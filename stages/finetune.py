@@ -31,7 +31,7 @@ def main(name: str, predictor: str, clips: Path, found: Path, trained: Path, mod
         ClipSet(clips), table, nets, untuned, last, predict.mirrors, recipe, learned.windows, params, compute.seed,
         folder / "training.pt",
     )  # fmt: skip
-    print(f"{name}, {predictor}: {'better, shipped' if tuned.gained else 'not better, the former two stay'}")
+    print(f"{name}, {predictor}: {'better' if tuned.gained else 'not better, the former two stay'}")
     save_tuned(out, tuned, predictor, learned)
     forget(folder)
 

@@ -13,6 +13,7 @@ from physpipe.core.horizon import PredictParams
 from physpipe.core.objects import ObjectsParams
 from physpipe.core.params import read, read_value
 from physpipe.exporting.scale import ScaleParams
+from physpipe.finetuning.tuning import FinetuneParams
 from physpipe.flow_learning.film import as_batch, draw_pairs
 from physpipe.flow_learning.flow import FlowParams
 from physpipe.flownet.network import CorrFlow
@@ -48,6 +49,11 @@ def test_every_simulated_set_names_presets_that_exist_in_each_of_its_sizes(name)
         assert world.balls.count == read(f"datasets.{name}.motion", ObjectsParams, PATH).objects
 
 
+def test_what_runs_and_how_it_is_tuned_is_told():
+    read("run", RunParams, PATH)
+    read("finetune", FinetuneParams, PATH)
+
+
 @pytest.mark.parametrize("name", list(PARAMS["predictors"]))
 def test_every_predictor_s_section_builds_one_that_takes_a_step(name):
     kind = predictor_class(read_value(f"predictors.{name}.kind", PATH))
@@ -57,7 +63,7 @@ def test_every_predictor_s_section_builds_one_that_takes_a_step(name):
     times = torch.arange(kind.seen_frames + 2.0).expand(2, -1)
     seen_times = times[:, [*range(kind.seen_frames), *([-1] if kind.sees_end else [])]]
     seen = Seen(film, torch.full((2, kind.seen_frames, 1, 2), 30.0), seen_times)
-    batch = Window(seen, times[:, -2:], torch.full((2, 2, 1, 2), 30.0))
+    batch = Window(seen, times[:, -2:], torch.full((2, 2, 1, 2), 30.0), 80.0)
     loss, _ = predictor.loss(batch, torch_generator(1))
     loss.backward()
     assert torch.isfinite(loss)

@@ -1,4 +1,4 @@
-"""Tunes tracker and predictor together, and ships them only where nothing that is known without labels got worse.
+"""Tunes tracker and predictor together, and keeps them only where no figure known without labels got worse.
 
 Ehrhardt et al. 2018 name this as future work (section 6); losses and gate are ours.
 """
@@ -38,7 +38,7 @@ class FinetuneParams(Section):
 
 @dataclass(frozen=True)
 class State:
-    """What is known of the two without labels, on film that they did not learn from; less is better."""
+    """What is known of the two without labels, less is better, on the validation clips that chose their checkpoints."""
 
     unlocked: bool
     """Whether the tracker's own verdict is that it follows nothing."""
@@ -48,6 +48,8 @@ class State:
     """Mean distance of what the detector finds from the refined tracks."""
     forecast_px: float
     """Mean distance of the forecasts from the refined tracks."""
+    forecast_loss: float
+    """What the predictor's own validation minimises."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class Tuned:
 
 
 def gained(after: State, before: State) -> bool:
-    """Whether what was tuned may be shipped: it is locked, nothing is worse, and something is better."""
+    """Whether what was tuned is kept: it is locked, none of its figures is worse, and some are better."""
     no_worse = all(new <= old for new, old in zip(astuple(after), astuple(before), strict=True))
     return not after.unlocked and no_worse and after != before
 
@@ -121,5 +123,7 @@ def _state(joint: Joint, task: Lesson, held_out: list[Stretch]) -> State:
     signals = task.read(joint.net)
     found = torch.cat([distance_px(joint.find(each)[1], each.xy) for each in held_out])
     forecast = torch.cat([distance_px(joint.forecast(each), each.xy) for each in held_out])
+    losses = [len(each.frames) * joint.predictor.validation_loss(each.window) for each in held_out]
+    loss = float(sum(losses)) / sum(len(each.frames) for each in held_out)
     score, unlocked = signals.score(task.signals), not locked(signals, task.lock)
-    return State(unlocked, score, found.mean().item(), forecast.mean().item())
+    return State(unlocked, score, found.mean().item(), forecast.mean().item(), loss)

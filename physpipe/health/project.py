@@ -10,6 +10,7 @@ from physpipe.core.horizon import PredictParams
 from physpipe.core.objects import ObjectsParams
 from physpipe.core.parallel import worker_count
 from physpipe.core.params import PARAMS, Section, read
+from physpipe.finetuning.tuning import FinetuneParams
 from physpipe.health.asking import Ask
 from physpipe.health.finding import Finding
 from physpipe.health.wording import counted
@@ -23,6 +24,7 @@ WHOLE: dict[str, type[Section]] = {
     "run": RunParams,
     "compute": ComputeParams,
     "tracker": TrackerParams,
+    "finetune": FinetuneParams,
     "report": ReportParams,
 }
 OF_A_SET: dict[str, type[Section]] = {

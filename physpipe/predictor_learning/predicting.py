@@ -110,7 +110,13 @@ def _twice_as_far(valid: TrackWindows, clips: ClipSet, table: pd.DataFrame) -> T
 
 
 def save_predictor(folder: Path, name: str, predictor: Predictor, params: LearnedParams, curve: pd.DataFrame) -> None:
-    """Writes weights.pt (with all that builds the model again) and curve.csv."""
+    """Writes weights.pt and curve.csv."""
+    save_weights(folder, name, predictor, params)
+    results.save_csv(folder / CURVE, curve)
+
+
+def save_weights(folder: Path, name: str, predictor: Predictor, params: LearnedParams) -> None:
+    """Writes weights.pt, with all that builds the model again."""
     content = {
         "predictor": name,
         "kind": params.kind,
@@ -119,7 +125,6 @@ def save_predictor(folder: Path, name: str, predictor: Predictor, params: Learne
         "state": predictor.cpu().state_dict(),
     }
     checkpoints.save(folder / WEIGHTS, content)
-    results.save_csv(folder / CURVE, curve)
 
 
 def load_predictor(folder: Path, name: str, objects: int) -> Predictor:

@@ -72,7 +72,6 @@ class TrackWindows:
             raise InputError(clips.folder / TABLE, f"no tracks of clip {lacking[0]}", "make the tracks again")
         self.frames = [clips.frames(name) for name in names]
         self.xy = [known[name] for name in names]
-        self.frames_per_s = float(1 / np.median([np.diff(clips.times_s(name)).mean() for name in names]))
         self.camera = self._camera_paths() if steady else None
         """Of each clip, (T, 2) px by which the still scene has shifted since the first frame; None: not taken off."""
         whole = [_whole(xy, horizon + 1) for xy in self.xy]
@@ -82,6 +81,8 @@ class TrackWindows:
         if not len(self.index):
             reason = f"no {split} clip has {horizon + 1} consecutive frames with all objects tracked"
             raise InputError(clips.folder / TABLE, reason, f"lower {KEYS} or give longer clips")
+        self.frames_per_s = float(1 / np.median([np.diff(clips.times_s(name)).mean() for name in names]))
+        """That of most clips."""
 
     def __len__(self) -> int:
         return len(self.index)

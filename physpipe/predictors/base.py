@@ -43,8 +43,8 @@ class Window:
     """(B, N) frames since the first one seen."""
     target: Tensor
     """(B, N, K, 2) pixels."""
-    frames_per_s: float = 80.0
-    """Rate of the film; the paper's unless told."""
+    frames_per_s: float
+    """Rate of the film."""
 
 
 class Predictor(nn.Module, ABC):

@@ -60,9 +60,10 @@ def smoothed(path: Tensor, frames: int) -> tuple[Tensor, Tensor, Tensor]:
     """(B, N, K, 2) places, the displacements that led there, and how those change in the next frame.
 
     Of `path` (B, T, K, 2) by the cubic nearest to `frames` of it around each (Savitzky and Golay 1964), where there are
-    as many; N is T - frames + 1. Fewer frames, an odd number, are taken of a shorter path.
+    as many; N is T - frames + 1. Fewer frames, an odd number, are taken of a shorter path: two thirds of it at most.
     """
-    width = min(frames, path.shape[1] - 1 + path.shape[1] % 2)
+    longest = max(2 * path.shape[1] // 3, FEWEST)
+    width = min(frames, longest - 1 + longest % 2, path.shape[1] - 1 + path.shape[1] % 2)
     around = path.unfold(1, width, 1)  # (B, N, K, 2, width)
     cubics = (path.new_tensor(savgol_coeffs(width, 3, deriv=order, use="dot")) for order in range(3))
     place, speed, turn = ((around * each).sum(-1) for each in cubics)  # a matrix product would round

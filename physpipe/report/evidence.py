@@ -1,6 +1,6 @@
 """Everything that the report shows, data set by data set, read from what the other stages left."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -90,15 +90,16 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
     heat_maps = [tracker / part / "heatmaps.png" for part in ("first", "all")]
     supervisions = run.supervisions(name)
     tuned = {each: results.load_json(scores / "finetuned" / f"{each}.json") for each in run.finetuned}
+    gained = [found for found in tuned.values() if found["gate"]["gained"]]
     return Evidence(
         name=name,
         simulated=name in run.simulated,
         clips=ClipSet(sources.clips / name),
         truth=tracks.load(sources.truth / f"{name}.parquet"),
         track=tracks.load(sources.tracks / f"{name}.parquet"),
-        trackers=results.load_json(scores / "trackers.json") | _merged(tuned, "trackers"),
+        trackers=results.load_json(scores / "trackers.json") | _merged(gained, "trackers"),
         predictors=_of_this_run(scores / "predictors.json", supervisions, run.predictors)
-        | ({TUNED: _merged(tuned, "predictors")} if tuned else {}),
+        | ({TUNED: _merged(gained, "predictors")} if gained else {}),
         tuning={each: found["gate"] for each, found in tuned.items()},
         calibration=results.load_json(scores / "predictors.json")["calibration"],
         tracker_errors=results.load_csv(scores / "tracker_errors.csv"),
@@ -113,8 +114,9 @@ def gather(name: str, run: RunParams, sources: Sources, shown: str) -> Evidence:
     )
 
 
-def _merged(tuned: Mapping[str, Row], what: str) -> dict[str, Row]:
-    return {name: row for found in tuned.values() for name, row in found[what].items()}
+def _merged(gained: Sequence[Row], what: str) -> dict[str, Row]:
+    """Rows of the pairs that are better for being tuned; the others' are those of the former two."""
+    return {name: row for found in gained for name, row in found[what].items()}
 
 
 def _of_this_run(path: Path, supervisions: Sequence[str], names: Sequence[str]) -> dict[str, dict[str, Row]]:

@@ -44,9 +44,11 @@ SUPERVISION_WORDS = {
 }
 
 TUNING_WORDS = {
+    "unlocked": "not locked",
     "score": "tracker's score",
     "tracker_px": "detections from the refined tracks, px",
     "forecast_px": "forecasts from the refined tracks, px",
+    "forecast_loss": "the predictor's own validation",
 }
 
 Line = tuple[str, Any, Any, Any, str]
@@ -92,7 +94,7 @@ def _of_tracker(rows: dict[str, Row]) -> Iterator[Line]:
 
 def _of_predictor(blocks: dict[str, dict[str, Row]], predictor: str) -> Iterator[Line]:
     for supervision, rows in blocks.items():
-        ours, still = rows.get(predictor, {}), rows.get("persistence", {})
+        ours, still = rows.get(predictor, {}), blocks["truth" if supervision == "truth" else "tracks"]["persistence"]
         for key, horizon in HORIZONS.items() if ours else ():
             what = f"{predictor} from {SUPERVISION_WORDS[supervision]}, at {horizon}"
             yield what, ours.get(key), ours.get(f"paper_{key}"), still.get(key), f"predictor:{predictor}"

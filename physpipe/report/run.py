@@ -1,6 +1,6 @@
 """What a run consists of, as params.yaml says."""
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from physpipe.core.horizon import BASELINES
 from physpipe.core.params import Section
@@ -26,12 +26,13 @@ class RunParams(Section):
     finetuned: list[str]
     """Those of `learned` that are tuned together with the tracker, each in a pair of its own with it."""
 
-    @model_validator(mode="after")
-    def _learned_before_they_are_tuned(self) -> "RunParams":
-        unlearned = [name for name in self.finetuned if name not in self.learned]
+    @field_validator("finetuned")
+    @classmethod
+    def _learned_before_they_are_tuned(cls, names: list[str], known: ValidationInfo) -> list[str]:
+        unlearned = [name for name in names if name not in known.data.get("learned", names)]
         if unlearned:
-            raise ValueError(f"`finetuned` names {', '.join(unlearned)}, which `learned` does not")
-        return self
+            raise ValueError(f"{', '.join(unlearned)} must be in `run.learned`, too")
+        return names
 
     @property
     def predictors(self) -> list[str]:

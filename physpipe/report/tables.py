@@ -24,13 +24,19 @@ def save_metrics(folder: Path, every: Sequence[Evidence], predictor: str) -> Non
     results.save_json(folder / "trackers.json", {each.name: tracker_rows(each) for each in every})
     results.save_json(
         folder / "predictors.json",
-        {each.name: {**predictor_rows(each), "calibration": calibration_row(each)} for each in every},
+        {each.name: {**predictor_rows(each), **_about(each)} for each in every},
     )
     results.save_json(folder / "summary.json", summary(every, predictor))
     results.save_csv(folder / "curves.csv", _long([each.horizons for each in every], every, CURVE_COLUMNS))
     distributions = [error_distributions(each.tracker_errors) for each in every]
     results.save_csv(folder / "tracker_errors.csv", _long(distributions, every, DISTRIBUTION_COLUMNS))
     results.save_csv(folder / "learning.csv", _long([each.learning for each in every], every, LEARNING_COLUMNS))
+
+
+def _about(evidence: Evidence) -> dict[str, Any]:
+    """What else stands beside the predictors' rows."""
+    tuning = {"tuning": evidence.tuning} if evidence.tuning else {}
+    return {"calibration": calibration_row(evidence), **tuning}
 
 
 def summary(every: Sequence[Evidence], predictor: str) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from physpipe.tracknet.model import TrackNet
 
 
 def learn_first(clips: ClipSet, params: TrackerParams, compute: ComputeParams, scratch: Path) -> Learned:
-    """T1: `starts` short trainings, then the rest of the training for the best of them."""
+    """T1: `starts` short trainings, then the rest of the training for the best of them, unless that spoils it."""
     recipe = params.chosen()
     task = lesson(clips, params)
     nets, curves = [], []
@@ -23,6 +23,8 @@ def learn_first(clips: ClipSet, params: TrackerParams, compute: ComputeParams, s
         seed = 1000 * compute.seed + number
         curves.append(task.run(net, recipe.start, seed, scratch / f"start{number}.pt", f"start {number}"))
         nets.append(net)
-    best = copied(min(nets, key=task.rank))
-    curves.append(task.run(best, recipe.rest, 1000 * compute.seed + 999, scratch / "rest.pt", "rest"))
+    start = min(nets, key=task.rank)
+    trained = copied(start)
+    curves.append(task.run(trained, recipe.rest, 1000 * compute.seed + 999, scratch / "rest.pt", "rest"))
+    best = min((trained, start), key=task.rank)
     return Learned(best, pd.concat(curves), task.read(best), nets)

@@ -51,7 +51,7 @@ def random_window(kind: type[Predictor], frames: int, clips: int = 2) -> Window:
     xy = torch.tensor([WIDTH, HEIGHT]) / 2 + moves
     times = torch.arange(frames, dtype=torch.float32).expand(clips, -1)
     known, asked = slice(kind.seen_frames), slice(kind.seen_frames, None)
-    return Window(Seen(film, xy[:, known], times[:, seen]), times[:, asked], xy[:, asked])
+    return Window(Seen(film, xy[:, known], times[:, seen]), times[:, asked], xy[:, asked], 80.0)
 
 
 def built(name: str, **changed: object) -> Predictor:

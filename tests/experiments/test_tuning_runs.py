@@ -24,7 +24,8 @@ def known() -> dict:
     }
     predictors = {
         "tracks": {"dispnet": {"error_T_px": 4.0, "error_2T_px": 8.0}},
-        "tuned": {"dispnet": {"error_T_px": 3.5, "error_2T_px": None, "gained": True}},
+        "tuned": {"dispnet": {"error_T_px": 3.5, "error_2T_px": None}},
+        "tuning": {"dispnet": {"gained": True}},
     }
     return {WANTED["bowls"]: result(predictors), of_trackers(WANTED["bowls"]): result(trackers)}
 
@@ -38,10 +39,19 @@ def test_both_views_are_of_one_experiment_that_tunes_what_it_learned():
 
 def test_a_row_holds_before_and_after_and_whether_it_is_used():
     row = collect(WANTED, known(), seed=3)["bowls"]
-    assert (row["used"], row["commit"], row["seeds"]) == (True, "abc1234", [3])
+    assert (row["kept"], row["commit"], row["seeds"]) == (True, "abc1234", [3])
     assert (row["detections_px_before"], row["detections_px_after"]) == (0.5, 0.25)
     assert (row["track_px_before"], row["track_px_after"]) == (0.3, 0.31)
     assert (row["T_px_before"], row["T_px_after"], row["2T_px_after"]) == (4.0, 3.5, None)
+
+
+def test_where_the_former_two_stay_nothing_changes():
+    found = known()
+    found[WANTED["bowls"]].figures["bowls"] |= {"tuning": {"dispnet": {"gained": False}}}
+    del found[WANTED["bowls"]].figures["bowls"]["tuned"]
+    row = collect(WANTED, found, seed=3)["bowls"]
+    assert not row["kept"]
+    assert (row["detections_px_after"], row["T_px_after"]) == (row["detections_px_before"], row["T_px_before"])
 
 
 def test_one_file_alone_makes_no_row():

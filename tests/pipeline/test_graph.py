@@ -146,3 +146,10 @@ def test_every_stage_says_what_it_does():
 
 def test_the_page_is_never_a_link_into_the_cache():
     assert {"report": {"cache": False}} in body("report")["outs"]  # browsers show a file without suffix as text
+
+
+def test_git_ignores_all_that_dvc_keeps():
+    ignored = (ROOT / ".gitignore").read_text().splitlines()
+    kept = {out for name in STAGES for out in paths([each for each in body(name)["outs"] if isinstance(each, str)])}
+    roots = {"/".join(out.split("/")[:2]) for out in kept} - {"data/raw", "data/annotations"}  # users add to those
+    assert [root for root in sorted(roots) if f"/{root}/" not in ignored] == []

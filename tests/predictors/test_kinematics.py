@@ -72,4 +72,9 @@ def test_smoothing_leaves_a_tenth_of_the_noise_of_second_differences():
 
 
 def test_a_short_path_is_smoothed_over_what_there_is():
-    assert smoothed(torch.zeros(2, 8, 1, 2), frames=9)[0].shape == (2, 2, 1, 2)
+    assert smoothed(torch.zeros(2, 8, 1, 2), frames=9)[0].shape == (2, 4, 1, 2)  # 5 of them
+
+
+def test_of_a_path_no_more_than_two_thirds_are_smoothed_over():
+    path = torch.zeros(1, 21, 1, 2)
+    assert [smoothed(path, frames)[0].shape[1] for frames in (5, 9, 13, 27)] == [17, 13, 9, 9]

@@ -32,7 +32,7 @@ def springs(clips: int, frames: int, objects: int = 1) -> Window:
     times = torch.arange(frames, dtype=torch.float32).expand(clips, -1)
     xy = torch.tensor([WIDTH, HEIGHT]) / 2 + amplitude * torch.cos(0.2 * times[..., None, None] + phase)
     film = torch.linspace(0, 1, WIDTH).expand(clips, 4, 3, HEIGHT, WIDTH)
-    return Window(Seen(film, xy[:, :4], times[:, :4]), times[:, 4:], xy[:, 4:])
+    return Window(Seen(film, xy[:, :4], times[:, :4]), times[:, 4:], xy[:, 4:], 80.0)
 
 
 def terrain(objects: int = 1, drawn: float = 0.0, **changed: object) -> Terrain:

@@ -13,6 +13,7 @@ from physpipe.io import results, tracks
 from physpipe.metrics import trackers as metrics
 from physpipe.tracker_learning import saving
 from physpipe.tracker_learning.first import learn_first
+from physpipe.tracker_learning.lesson import Lesson
 from physpipe.tracker_learning.moments import MomentSampler
 from physpipe.tracker_learning.others import learn_others
 from physpipe.trackers import detectors
@@ -30,6 +31,23 @@ def test_a_rolling_ball_is_found_without_labels_and_the_verdict_says_so(tmp_path
     errors = [np.linalg.norm(tracker.track(clips.frames(n)).xy - truth[n][:, 0], axis=1) for n in clips.names("test")]
     assert np.mean(errors) < 1.5  # pixels, of a ball 6 px wide and cells 4 px wide
     assert locked(learned.signals, params(1, 1).lock)
+
+
+def test_a_training_that_spoils_the_chosen_start_is_not_kept(tmp_path, monkeypatch):
+    clips, _ = orbits(tmp_path / "clips")
+    recipe, run = params(steps=100, warm=60, rest=1), Lesson.run
+
+    def spoiling(self, net, fit, seed, checkpoint, what):
+        curve = run(self, net, fit, seed, checkpoint, what)
+        if what == "rest":
+            for weights in net.parameters():
+                weights.data.zero_()
+        return curve
+
+    monkeypatch.setattr(Lesson, "run", spoiling)
+    learned = learn_first(clips, recipe, COMPUTE, tmp_path / "scratch")
+    assert locked(learned.signals, recipe.lock)
+    assert any(learned.net is start for start in learned.starts)
 
 
 def test_two_balls_are_found_one_after_the_other(tmp_path):
