@@ -94,8 +94,13 @@ def test_a_pair_is_tuned_together_when_asked_for_and_its_rows_go_when_no_longer(
     figures = {
         each: json.loads((project.root / f"metrics/{each}.json").read_text()) for each in ("trackers", "predictors")
     }
-    assert {"unsupervised_with_dispnet", "unsupervised_unrefined_with_dispnet"} < set(figures["trackers"]["bowls"])
-    assert list(figures["predictors"]["bowls"]["tuned"]) == ["dispnet"]
+    trackers, predictors = (figures[each]["bowls"] for each in ("trackers", "predictors"))
+    gained = predictors["tuning"]["dispnet"]["gained"]
+    assert ("unsupervised_with_dispnet" in trackers) == gained
+    assert ("tuned" in predictors) == gained
+    scored = json.loads((project.root / "data/scores/bowls/finetuned/dispnet.json").read_text())
+    assert set(scored["trackers"]) == {"unsupervised_with_dispnet", "unsupervised_unrefined_with_dispnet"}
+    assert list(scored["predictors"]) == ["dispnet"]
     assert "Tracker and predictor tuned together" in (project.root / "report/index.html").read_text()
     project.write({"run.finetuned": []})
     assert project.repro() == {"report"}
