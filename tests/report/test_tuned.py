@@ -52,7 +52,7 @@ def test_the_page_tells_before_after_and_whether_it_is_used(asked, tmp_path):
     for told, kept in ((bowls, "yes"), (film, "no")):
         score, detections, forecasts, loss = ("0.310", "0.310"), ("0.560", "0.250"), ("2.16", "2.16"), ("2.50", "2.50")
         cells = re.findall(r"<data[^>]*>(.*?)</data>", told.split("</table>")[0])
-        assert cells == ["no", "no", *score, *detections, *forecasts, *loss, kept]
+        assert cells == ["no", "no", kept, *score, *detections, *forecasts, *loss]
 
 
 def test_without_it_nothing_of_it_is_told(folder):
