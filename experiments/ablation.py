@@ -18,7 +18,7 @@ from scipy.stats import spearmanr
 
 from experiments.ablation_chart import draw
 from experiments.queue import run_missing
-from experiments.records import CommandError, Experiment, Result, read_results, tracker_only
+from experiments.records import CommandError, Experiment, Result, on_one_set, read_results
 from experiments.spread import Row, over_seeds
 from experiments.variants import ALL_LOSSES, CONSTANT, variants
 
@@ -32,7 +32,7 @@ def experiments(dataset: str, simulated: bool, seeds: Sequence[int]) -> dict[tup
     return {
         (part, row, seed): Experiment(
             f"ablation-{dataset}-{part}-{row.replace('+', '-').replace(' ', '-')}-seed{seed}",
-            (*tracker_only(dataset, seed, simulated), "baselines.names=[centre]", *overrides),
+            (*on_one_set(dataset, seed, simulated), "baselines.names=[centre]", *overrides),
         )
         for part, rows in variants().items()
         for row, overrides in rows.items()

@@ -4,7 +4,7 @@ them."""
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from experiments.records import ONE_THREAD, Experiment, Result, about
+from experiments.records import Experiment, Result, about, on_one_set
 from experiments.spread import over_seeds
 from experiments.tracker_runs import Table
 
@@ -33,16 +33,7 @@ def experiments(
     return {
         (name, predictor): Experiment(
             f"forecasts-{name}-{predictor}-seed{seed}",
-            (
-                f"run.datasets=[{name}]",
-                f"run.simulated=[{name if 'simulate' in datasets[name] else ''}]",
-                f"run.learned=[{predictor}]",
-                f"run.supervised=[{name if 'truth' in sources else ''}]",
-                "run.finetuned=[]",
-                f"report.predictor={predictor}",
-                f"compute.seed={seed}",
-                ONE_THREAD,
-            ),
+            on_one_set(name, seed, "simulate" in datasets[name], predictor, supervised="truth" in sources),
             "predictors",
         )
         for name, predictors in wanted.items()

@@ -69,15 +69,17 @@ def command(*words: str) -> str:
     return told
 
 
-def tracker_only(dataset: str, seed: int, simulated: bool) -> tuple[str, ...]:
-    """Overrides that leave nothing to run but one data set's trackers."""
+def on_one_set(
+    dataset: str, seed: int, simulated: bool, predictor: str = "", supervised: bool = False, finetuned: bool = False
+) -> tuple[str, ...]:
+    """Overrides that leave nothing to run but one data set, its trackers and the one predictor that is named."""
     return (
         f"run.datasets=[{dataset}]",
         f"run.simulated=[{dataset if simulated else ''}]",
-        "run.learned=[]",
-        "run.supervised=[]",
-        "run.finetuned=[]",
-        "report.predictor=persistence",
+        f"run.learned=[{predictor}]",
+        f"run.supervised=[{dataset if supervised else ''}]",
+        f"run.finetuned=[{predictor if finetuned else ''}]",
+        f"report.predictor={predictor or 'persistence'}",
         f"compute.seed={seed}",
         ONE_THREAD,
     )

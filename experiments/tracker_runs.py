@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from experiments.records import Experiment, Result, about, tracker_only
+from experiments.records import Experiment, Result, about, on_one_set
 from experiments.spread import Row, over_seeds
 
 RECIPES = {"joint": "unsupervised_joint", "sequential": "unsupervised", "flow": "unsupervised_joint"}
@@ -19,7 +19,7 @@ def experiments(
     return {
         (name, recipe, seed): Experiment(
             f"results-{name}-{recipe}-seed{seed}",
-            (*tracker_only(name, seed, "simulate" in datasets[name]), *_told(recipe, name)),
+            (*on_one_set(name, seed, "simulate" in datasets[name]), *_told(recipe, name)),
         )
         for recipe in RECIPES
         for name in names

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from experiments.records import ONE_THREAD, Experiment, Result, about
+from experiments.records import Experiment, Result, about, on_one_set
 from experiments.spread import Row
 from experiments.tables import line, number
 
@@ -30,16 +30,7 @@ def experiments(names: Sequence[str], datasets: Mapping[str, Any], seed: int) ->
     return {
         name: Experiment(
             f"finetuned-{name}-{PREDICTOR}-seed{seed}",
-            (
-                f"run.datasets=[{name}]",
-                f"run.simulated=[{name if 'simulate' in datasets[name] else ''}]",
-                f"run.learned=[{PREDICTOR}]",
-                "run.supervised=[]",
-                f"run.finetuned=[{PREDICTOR}]",
-                f"report.predictor={PREDICTOR}",
-                f"compute.seed={seed}",
-                ONE_THREAD,
-            ),
+            on_one_set(name, seed, "simulate" in datasets[name], PREDICTOR, finetuned=True),
             "predictors",
         )
         for name in names

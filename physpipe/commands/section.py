@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from physpipe.core.errors import InputError
 from physpipe.core.params import PARAMS, Section, read
 from physpipe.exporting.scale import ScaleParams
-from physpipe.health.project import OF_A_SET
+from physpipe.health.sections import OF_A_SET
 from physpipe.ingest.dataset import IngestParams
 from physpipe.io import params_file
 

@@ -94,10 +94,8 @@ def tune(
         raise InputError("params.yaml: run.finetuned", reason, "use `tracker.recipe: joint`: one detector finds all")
     net, size, looks = nets[0], params.fit.batch_size, params.agreement.looks
     seen, ends = predictor.seen_frames, predictor.sees_end
-    train, alone = (
-        TrackWindows(clips, table, "train", seen, horizon, ends, steady, mirrors)
-        for steady in (False, predictor.steadies)
-    )
+    alone = TrackWindows(clips, table, "train", seen, horizon, ends, predictor.steadies, mirrors)
+    train = TrackWindows(clips, table, "train", seen, horizon, ends) if predictor.steadies else alone
     valid = TrackWindows(clips, table, "valid", seen, horizon, ends)
     held_out = evenly(valid, params.held_out, looks, size)
     task = lesson(clips, tracker)

@@ -3,18 +3,15 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from physpipe.core.ball import BallParams
 from physpipe.core.determinism import ComputeParams
 from physpipe.core.errors import InputError
-from physpipe.core.horizon import PredictParams
-from physpipe.core.objects import ObjectsParams
 from physpipe.core.parallel import worker_count
 from physpipe.core.params import PARAMS, Section, read
 from physpipe.finetuning.tuning import FinetuneParams
 from physpipe.health.asking import Ask
 from physpipe.health.finding import Finding
+from physpipe.health.sections import OF_A_SET
 from physpipe.health.wording import counted
-from physpipe.ingest.dataset import IngestParams
 from physpipe.io import folders
 from physpipe.report.params import ReportParams
 from physpipe.report.run import RunParams
@@ -26,12 +23,6 @@ WHOLE: dict[str, type[Section]] = {
     "tracker": TrackerParams,
     "finetune": FinetuneParams,
     "report": ReportParams,
-}
-OF_A_SET: dict[str, type[Section]] = {
-    "ingest": IngestParams,
-    "motion": ObjectsParams,
-    "evaluate": BallParams,
-    "predict": PredictParams,
 }
 AUTHOR = ("user.name", "user.email")
 

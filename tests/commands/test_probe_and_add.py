@@ -2,6 +2,8 @@
 
 import shlex
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -145,3 +147,9 @@ def test_elsewhere_the_project_s_root_is_asked_for(run, film, monkeypatch):
     monkeypatch.chdir(film)
     with pytest.raises(SystemExit, match="run from the project's root"):
         run("probe", film)
+
+
+def test_a_look_at_film_does_not_wait_for_pytorch():
+    """It takes longer to load than all the rest together."""
+    found = "import sys, physpipe.commands.probe, physpipe.commands.add; print('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", found], capture_output=True, text=True).stdout == "False\n"

@@ -14,8 +14,8 @@ from experiments.records import (
     finished,
     machine,
     note_cost,
+    on_one_set,
     read_results,
-    tracker_only,
 )
 
 ROOT = Path(__file__).parents[2]
@@ -50,8 +50,8 @@ def test_code_of_forecasts_alone_makes_no_track_and_every_forecast_out_of_date()
 
 
 def test_only_one_data_set_s_trackers_are_left_to_run():
-    assert "run.simulated=[bowls]" in tracker_only("bowls", 1, simulated=True)
-    film = tracker_only("tray", 2, simulated=False)
+    assert "run.simulated=[bowls]" in on_one_set("bowls", 1, simulated=True)
+    film = on_one_set("tray", 2, simulated=False)
     assert {"run.datasets=[tray]", "run.simulated=[]", "run.learned=[]", "compute.seed=2"} <= set(film)
 
 

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 import torch
 from small_tracker import orbits, params
+from springs import STATE
 
 from physpipe.core.determinism import ComputeParams
 from physpipe.io import tracks
@@ -38,6 +39,6 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Pair:
     net = learn_first(clips, tracker, ComputeParams(seed=0, threads=1), folder / "scratch").net
     # Discs are so plain that refined tracks would be where they are drawn
     refined = [tracks.rows(name, clips.times_s(name), xy, np.ones(xy.shape[:2])) for name, xy in truth.items()]
-    small = TensorStateParams(stem=8, channels=16, hidden=16, follow=True, symmetric=False, objects_alike=True)
+    small = TensorStateParams(**STATE | {"symmetric": False})
     torch.manual_seed(0)
     return Pair(clips, pd.concat(refined), net, DispNet(small, 1).eval(), tracker)

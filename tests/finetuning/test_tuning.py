@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from springs import STATE
 from torch import nn
 
 from physpipe.core.errors import InputError
@@ -31,9 +32,8 @@ FIT = FitParams(
 PARAMS = FinetuneParams(
     agreement=AgreementParams(looks=2, window_px=6, consistency=0.3, prior=0.05, prior_px=4), held_out=8, fit=FIT
 )
-SMALL = TensorStateParams(stem=8, channels=16, hidden=16, follow=True, symmetric=False, objects_alike=True)
+SMALL = TensorStateParams(**STATE | {"symmetric": False})
 SHORT = FIT.model_copy(update={"steps": 2, "valid_every": 2})
-STATE = SMALL.model_dump()
 KINDS = {
     "probnet": ProbNetParams(**STATE, least_std_px=0.25, largest_std_px=40.0, distance_steps=0),
     "interpnet": InterpNetParams(**STATE, first_state=1.0),
