@@ -96,9 +96,9 @@ def learn_predictor(
 
 @torch.no_grad()
 def calibrate(predictor: Predictor, clips: ClipSet, table: pd.DataFrame, valid: TrackWindows, count: int) -> None:
-    """Fits how sure it is to at most `count` validation windows, once all else is learned."""
+    """Fits how sure it is, once all else is learned, to the `count` validation windows that begin as forecasts do."""
     far = valid if predictor.sees_end else _twice_as_far(valid, clips, table)
-    predictor.calibrate(far.batch(far.evenly(count).tolist()))
+    predictor.calibrate(far.batch(far.early(count).tolist()))
 
 
 def _twice_as_far(valid: TrackWindows, clips: ClipSet, table: pd.DataFrame) -> TrackWindows:

@@ -91,6 +91,10 @@ class TrackWindows:
         """At most `count` window numbers, spread over all clips."""
         return np.unique(np.linspace(0, len(self) - 1, min(count, len(self))).round().astype(np.int64))
 
+    def early(self, count: int) -> NDArray[np.int64]:
+        """The `count` window numbers, or fewer, that begin soonest in their clips."""
+        return np.argsort(self.index[:, 1], kind="stable")[:count]
+
     def batch(self, numbers: Sequence[int], symmetries: Sequence[Symmetry] | None = None) -> Window:
         """The windows of those numbers, each turned and mirrored by its symmetry, on the device."""
         T0, asked = self.seen_frames, self.horizon + 1 - self.seen_frames

@@ -85,6 +85,7 @@ class Terrain(Predictor):
         parts = {"train_change_px": mismatch.item()}
         self.steps += 1
         if self.steps <= self.params.matched_steps:
+            self.law.see_distances(track)
             return mismatch, parts
         path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1])
         distance = distance_px(unit.to_px(path), batch.target)
@@ -94,8 +95,9 @@ class Terrain(Predictor):
     def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit, frames_per_s: float) -> Tensor:
         """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame."""
         place, velocity, turn = smoothed(track, odd(self.params.smoothing_s * frames_per_s))
-        found = self.law(scene, Motion(place, velocity)).velocity - velocity
-        return distance_px(unit.px * found, unit.px * turn).mean()
+        found = self.law(scene, Motion.rolling(place, velocity)).velocity - velocity
+        free = self.law.untouched(track, width=track.shape[1] - place.shape[1] + 1)
+        return (free * distance_px(unit.px * found, unit.px * turn)).mean()
 
     def calibrate(self, held_out: Window) -> None:
         """Fits the covariance, which is of no use before."""
@@ -143,7 +145,7 @@ class Terrain(Predictor):
         here = read(scene.map, places[:, -1:], scene.aspect)[:, 0]
         told = [here, scene.whole.unsqueeze(1).expand(-1, self.objects, -1), past(places)]
         place, velocity = mended(self.start(torch.cat(told, dim=2)), places, times)
-        return Motion(place.unsqueeze(1), velocity.unsqueeze(1))
+        return Motion.rolling(place.unsqueeze(1), velocity.unsqueeze(1))
 
 
 def _ahead(seen: Seen, asked_times: Tensor) -> Tensor:

@@ -4,12 +4,11 @@ from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
+from torch.nn.functional import max_pool1d
 
+from physpipe.predictors.contact import Contact
 from physpipe.predictors.kinematics import FASTEST, POWERS, SPEED, change
 from physpipe.predictors.layers import bilinear_weights, read_at, zero_linear, zero_reader
-
-NEAR = 0.2
-"""A lively distance between two objects, in halves of the frame's longer side."""
 
 
 class Motion(NamedTuple):
@@ -19,6 +18,13 @@ class Motion(NamedTuple):
     """(B, M, K, 2) from the frame's centre, half of its longer side being 1."""
     velocity: Tensor
     """(B, M, K, 2) a frame."""
+    sliding: Tensor
+    """(B, M, K, 2) how much faster it is than it rolls, since it met another; a frame."""
+
+    @classmethod
+    def rolling(cls, place: Tensor, velocity: Tensor) -> "Motion":
+        """Of objects that have met none."""
+        return cls(place, velocity, torch.zeros_like(velocity))
 
 
 class Scene(NamedTuple):
@@ -44,7 +50,7 @@ class Law(nn.Module):
         super().__init__()
         self.ground = zero_reader(2 * channels + whole + code + 4, hidden, 2 * POWERS, nn.SiLU)
         self.direct = zero_linear(channels, 2 * POWERS)
-        self.pair = zero_reader(10 + 2 * code, hidden, 2, nn.SiLU) if pairs else None
+        self.contact = Contact(channels, code, hidden) if pairs else None
 
     def forward(self, scene: Scene, now: Motion) -> Motion:
         """One frame later."""
@@ -59,24 +65,33 @@ class Law(nn.Module):
         here = read(scene.map, now.place, scene.aspect)
         seen = [here, read(scene.map, ahead, scene.aspect), same.unsqueeze(1).expand(-1, M, -1, -1), now.place, speed]
         turn = change(self.direct(here) + self.ground(torch.cat(seen, dim=-1)), now.velocity)
-        if self.pair is not None:
-            turn = turn + self._pushes(scene, now)
         velocity = (now.velocity + turn).clamp(-FASTEST, FASTEST)  # else the law's square term may run away
-        return Motion(now.place + velocity, velocity)
+        if self.contact is None:
+            return now._replace(place=now.place + velocity, velocity=velocity)
+        between = (now.place.unsqueeze(2) + now.place.unsqueeze(3)).flatten(2, 3) / 2
+        ground = read(scene.map, between, scene.aspect).unflatten(2, now.place.shape[2:3] * 2)
+        impact = self.contact(now.place, velocity, ground, scene.objects)
+        slower, sliding = self.contact.rolled(now.sliding + impact.slid, velocity, here)
+        place = now.place + velocity + impact.moved + slower
+        return Motion(place, (velocity + impact.push + slower).clamp(-FASTEST, FASTEST), sliding)
 
-    def _pushes(self, scene: Scene, now: Motion) -> Tensor:
-        """(B, M, K, 2) change of each object's velocity by all others."""
-        assert self.pair is not None
-        M, K = now.place.shape[1:3]
-        apart, closing = (each.unsqueeze(2) - each.unsqueeze(3) for each in now)  # (B, M, K, K, 2): from i to j
-        soon = apart + closing
-        far, near = (each.square().sum(-1, keepdim=True).add(1e-6).sqrt() / NEAR for each in (apart, soon))
-        codes = scene.objects.unsqueeze(1).expand(-1, K, -1, -1)
-        both = torch.cat([codes.transpose(1, 2), codes], dim=-1).unsqueeze(1).expand(-1, M, -1, -1, -1)
-        told = [apart / NEAR, soon / NEAR, closing / SPEED, apart / NEAR / (far + 0.1), far, near, both]
-        push = SPEED * self.pair(torch.cat(told, dim=-1)).float()
-        others = 1 - torch.eye(K, device=push.device).unsqueeze(-1)
-        return (push * others).sum(3)
+    def see_distances(self, track: Tensor) -> None:
+        """Where nothing is learned of touches yet: takes from tracks (B, T, K, 2) how near objects come."""
+        if self.contact is not None:
+            self.contact.see_distance(nearest_two(track).min())
+
+    def untouched(self, track: Tensor, width: int) -> Tensor:
+        """(B, T - width + 1, 1) 1 where none can have met another in the `width` frames of `track` from there on."""
+        if self.contact is None:
+            return torch.ones_like(track[:, width - 1 :, :1, 0])
+        nearest = -max_pool1d(-nearest_two(track), width, stride=1)
+        return (nearest > self.contact.surely_apart()).to(track).unsqueeze(-1)
+
+
+def nearest_two(track: Tensor) -> Tensor:
+    """(B, T) distance of the two objects of `track` (B, T, K, 2), K > 1, that are nearest to each other."""
+    one, other = torch.triu_indices(track.shape[2], track.shape[2], 1)
+    return torch.linalg.vector_norm(track[:, :, one] - track[:, :, other], dim=-1).amin(2)
 
 
 def read(ground: Tensor, place: Tensor, aspect: Tensor) -> Tensor:

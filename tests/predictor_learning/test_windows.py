@@ -166,6 +166,12 @@ def test_windows_from_the_clips_beginnings_are_drawn_by_their_share_where_they_c
     assert share * 20 <= (found.index[half, 1] == 0).sum() < 40
 
 
+def test_early_windows_are_those_that_begin_soonest_in_their_clips(tmp_path):
+    found = windows(tmp_path)
+    assert [found.index[number].tolist() for number in found.early(3)] == [[0, 0], [1, 0], [0, 1]]
+    assert sorted(found.early(100)) == list(range(8))
+
+
 def test_evenly_spread_windows_reach_both_ends(tmp_path):
     found = windows(tmp_path / "set")
     assert found.evenly(3).tolist() == [0, 4, 7]

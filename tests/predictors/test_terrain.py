@@ -77,7 +77,18 @@ def test_an_object_is_pushed_by_another_only_where_there_is_one():
         - net(window.seen, window.asked_times).mean
     )
     assert apart[:, :, 0].abs().max() > 1e-2  # px
-    assert terrain(objects=1).law.pair is None
+    assert terrain(objects=1).law.contact is None
+
+
+def test_what_a_meeting_smears_over_a_smoothed_track_teaches_the_ground_nothing():
+    """Two balls that meet at frame 10."""
+    ahead = torch.linspace(-0.5, 0.5, 21).abs() + 0.05
+    track = torch.stack([torch.stack([ahead, 0 * ahead], -1), torch.stack([-ahead, 0 * ahead], -1)], dim=1)[None]
+    law = terrain(objects=2).law
+    for _ in range(600):
+        law.see_distances(track)
+    free = law.untouched(track, width=5)[0, :, 0]
+    assert free.tolist() == [float(10 not in range(at, at + 5)) for at in range(17)]
 
 
 def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():

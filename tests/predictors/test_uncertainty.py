@@ -10,18 +10,27 @@ from physpipe.predictors.uncertainty import Spread, linearised
 
 
 def straight(now: Motion) -> Motion:
-    return Motion(now.place + now.velocity, now.velocity)
+    return now._replace(place=now.place + now.velocity)
 
 
-def spread(objects: int, *stds: float, sway: float = 1e-6, frames: float = 2.0) -> Spread:
+def spread(
+    objects: int,
+    place: float,
+    velocity: float,
+    change: float,
+    seen: float,
+    always: float = 1e-9,
+    sway: float = 1e-6,
+    frames: float = 2.0,
+) -> Spread:
     made = Spread(objects)
-    made.logs.copy_(torch.tensor([*stds, sway, frames]).log())
+    made.logs.copy_(torch.tensor([place, velocity, change, always, seen, sway, frames]).log())
     return made
 
 
 def start(clips: int, objects: int) -> Motion:
     generator = torch_generator(0)
-    return Motion(
+    return Motion.rolling(
         torch.randn(clips, 1, objects, 2, generator=generator),
         0.1 * torch.randn(clips, 1, objects, 2, generator=generator),
     )
@@ -38,7 +47,7 @@ def test_free_flight_spreads_as_a_kalman_filter_says():
 
 
 def test_a_path_that_gathers_makes_a_forecast_surer():
-    drag = lambda now: Motion(0.8 * now.place, now.velocity)  # noqa: E731
+    drag = lambda now: now._replace(place=0.8 * now.place)  # noqa: E731
     cov = spread(1, 0.3, 1e-6, 1e-6, 1e-6)(linearised(drag, start(1, 1), steps=5).jacobians)
     torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt(), 0.3 * 0.8 ** torch.arange(1.0, 6.0), rtol=1e-3, atol=0)
 
@@ -82,10 +91,26 @@ def test_a_swaying_camera_is_found_again_to_a_tenth_and_covered_at_every_time():
 
 
 def test_lost_tracks_do_not_rule_the_fit():
-    jacobians = torch.eye(4).expand(100, 4, 4, 4)
+    jacobians = torch.eye(6).expand(100, 4, 6, 6)
     missed = 0.02 * torch.randn(100, 4, 1, 2, generator=torch_generator(2))
     missed[:3] += 1.0
     made = spread(1, 0.01, 0.001, 0.001, 0.01)
     made.fit(jacobians, missed, rounds=200)
     std = made(jacobians)[0, -1, 0, 0, 0].sqrt().item()
     assert std == pytest.approx(0.02, rel=0.15)
+
+
+def test_what_the_law_gets_wrong_in_every_frame_grows_as_its_square_and_is_found_again_to_a_tenth():
+    clips, steps = 400, 24
+    path = linearised(straight, start(clips, 1), steps)
+    t = torch.arange(1.0, steps + 1)
+    wrong = 0.001 * torch.randn(clips, 1, 1, 2, generator=torch_generator(4))
+    missed = (t * (t - 1) / 2)[:, None, None] * wrong  # what is wrong of velocity moves a place in the next frame only
+    missed = missed + 0.002 * torch.randn(clips, steps, 1, 2, generator=torch_generator(5))
+    made = Spread(1)
+    made.fit(path.jacobians, missed, rounds=400)
+    cov = made(path.jacobians)
+    true = (0.002**2 + (0.001 * t * (t - 1) / 2) ** 2).sqrt()
+    torch.testing.assert_close(cov[0, :, 0, 0, 0].sqrt()[5:], true[5:], rtol=0.1, atol=0)
+    inside = (squared_mahalanobis(missed, cov) < 4.605).float().mean(dim=(0, 2))
+    assert (inside - 0.9).abs().max() < 0.06  # four standard errors of 400 clips

@@ -1,0 +1,137 @@
+"""Facts about two objects that meet: those of mechanics."""
+
+import pytest
+import torch
+from torch import Tensor
+
+from physpipe.core.determinism import torch_generator
+from physpipe.predictors.contact import GRIP, REACH, RESTITUTION, SLIDE, Contact
+
+GROUND, CODE = 4, 3
+
+
+def contact(restitution: float = RESTITUTION) -> Contact:
+    torch.manual_seed(0)
+    made = Contact(GROUND, CODE, hidden=8)
+    for each in made.slope.parameters():
+        each.data.zero_()
+    made.bounce.data = torch.tensor(restitution).logit()
+    return made
+
+
+def learned() -> Contact:
+    """One whose pairs differ in every way."""
+    made = contact()
+    for each in made.parameters():
+        each.data += 0.1 * torch.randn(each.shape, generator=torch_generator(1))
+    return made
+
+
+def met(made: Contact, places: list[tuple[float, float]], displacements: list[tuple[float, float]]):
+    K = len(places)
+    generator = torch_generator(2)
+    ground, codes = torch.randn(1, 1, K, K, GROUND, generator=generator), torch.randn(1, K, CODE, generator=generator)
+    with torch.no_grad():
+        return made(torch.tensor([[places]]), torch.tensor([[displacements]]), ground, codes)
+
+
+def test_equal_balls_that_meet_head_on_without_loss_swap_their_velocities():
+    impact = met(contact(1 - 1e-6), [(0, 0), (REACH + 0.02, 0)], [(0.06, 0), (-0.02, 0)])
+    after = torch.tensor([[0.06, 0.0], [-0.02, 0.0]]) + impact.push[0, 0]
+    torch.testing.assert_close(after, torch.tensor([[-0.02, 0.0], [0.06, 0.0]]), rtol=0, atol=1e-3)
+
+
+def test_what_is_left_of_the_frame_after_the_touch_is_run_with_the_new_velocity():
+    impact = met(contact(), [(0, 0), (REACH + 0.02, 0)], [(0.06, 0), (-0.02, 0)])  # touch after a quarter of it
+    torch.testing.assert_close(impact.moved, 0.75 * impact.push, rtol=0, atol=2e-3)
+
+
+def test_a_ball_slides_by_the_share_of_the_push_that_spins_it_not():
+    made = contact()
+    made.spin.data = torch.tensor(0.7).logit()
+    impact = met(made, [(0, 0), (REACH + 0.02, 0)], [(0.06, 0), (-0.02, 0)])
+    torch.testing.assert_close(impact.slid, 0.7 * impact.push)
+
+
+def test_speed_of_parting_over_speed_of_meeting_is_the_restitution():
+    impact = met(contact(0.6), [(0, 0), (REACH + 0.01, 0)], [(0.06, 0), (-0.02, 0)])
+    parting = 0.06 + 0.02 + (impact.push[0, 0, 0, 0] - impact.push[0, 0, 1, 0]).item()
+    assert -parting / 0.08 == pytest.approx(0.6, abs=0.02)
+
+
+def test_a_glancing_touch_pushes_along_the_line_between_the_middles():
+    apart = REACH * torch.tensor([0.8, 0.6])
+    impact = met(contact(), [(0, 0), tuple((apart + torch.tensor([0.001, 0])).tolist())], [(0.06, 0), (0, 0)])
+    ahead = impact.push[0, 0, 1]
+    assert (ahead[1] / ahead[0]).item() == pytest.approx(0.75, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("places", "displacements"),
+    [
+        pytest.param([(0, 0), (1.5 * REACH, 0)], [(0.05, 0), (0, 0)], id="not this frame"),
+        pytest.param([(0, 0), (0, 1.5 * REACH)], [(0.4, 0), (0, 0)], id="passing by"),
+        pytest.param([(0, 0), (1.01 * REACH, 0)], [(-0.05, 0), (0, 0)], id="parting"),
+    ],
+)
+def test_objects_that_do_not_meet_are_not_pushed(places, displacements):
+    assert met(contact(), places, displacements).push.abs().max() < 1e-4
+
+
+def test_unequal_objects_are_pushed_apart_and_the_pushes_are_opposite():
+    impact = met(learned(), [(0, 0), (REACH, 0.01)], [(0.06, 0), (-0.02, 0)])
+    one, other = impact.push[0, 0]
+    assert one[0] < 0 < other[0]
+    cosine = torch.nn.functional.cosine_similarity(one, other, dim=0)
+    assert cosine.item() == pytest.approx(-1, abs=1e-5)
+
+
+def test_of_three_only_those_that_meet_are_pushed():
+    impact = met(contact(), [(0, 0), (0.9, 0.9), (REACH, 0)], [(0.06, 0), (0, 0), (0, 0)])
+    assert impact.push[0, 0, 1].abs().max() < 1e-4
+    assert impact.push[0, 0, 2, 0] > 0.02
+
+
+def test_on_a_slope_balls_meet_as_in_space():
+    """An elastic impact of equal balls on a plane that rises along y, worked out in three dimensions."""
+    rise = 1.2
+    made = contact(1 - 1e-6)
+    made.slope[-1].bias.data = torch.tensor([0.0, rise])
+    line = torch.tensor([0.6, 0.8, 0.8 * rise], dtype=torch.float64)
+    apart = 1.001 * REACH * line / line.norm()
+    seen = torch.tensor([0.05, 0.03])
+    impact = met(made, [(0, 0), (apart[0].item(), apart[1].item())], [tuple(seen.tolist()), (0, 0)])
+    velocity = torch.tensor([seen[0], seen[1], rise * seen[1]], dtype=torch.float64)
+    along = line / line.norm()
+    expected = (velocity @ along) * along[:2]
+    torch.testing.assert_close(impact.push[0, 0, 1].double(), expected, rtol=0.02, atol=0)
+
+
+def test_a_sliding_ball_gives_back_two_sevenths_and_then_rolls():
+    sliding: Tensor = torch.tensor([0.03, -0.04])[None, None, None]
+    gained, back, still = sliding, torch.zeros(2), torch.zeros(1, 1, 1, 2)
+    with torch.no_grad():
+        for _ in range(200):
+            change, sliding = contact().rolled(sliding, still, torch.zeros(1, 1, 1, GROUND))
+            assert change.norm() < GRIP * (1 + 1e-6)
+            back = back + change
+    torch.testing.assert_close(back, -gained / SLIDE, rtol=1e-3, atol=0)
+    assert sliding.norm() < 1e-5
+
+
+def test_gradients_are_finite_however_objects_lie():
+    made = contact()
+    places = torch.tensor([[[[0.0, 0.0], [REACH, 0.0]]], [[[0.0, 0.0], [0.0, 0.0]]], [[[0.0, 0.0], [0.9, 0.0]]]])
+    places.requires_grad_()
+    displacements = torch.tensor([[[[0.05, 0.0], [0.0, 0.0]]], [[[0.0, 0.0]] * 2], [[[0.0, 0.0]] * 2]]).requires_grad_()
+    impact = made(places, displacements, torch.zeros(3, 1, 2, 2, GROUND), torch.zeros(3, 2, CODE))
+    (impact.push.sum() + impact.moved.square().sum()).backward()
+    assert all(torch.isfinite(each.grad).all() for each in (places, displacements, made.reach, made.bounce))
+
+
+def test_the_reach_begins_where_objects_were_seen_to_come_nearest():
+    made = contact()
+    for _ in range(600):
+        made.see_distance(torch.tensor(0.37))
+    assert made.reach.exp().item() == pytest.approx(1.3 * 0.37, rel=1e-3)
+    assert made.surely_apart().item() > 0.37
