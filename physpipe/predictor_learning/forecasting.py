@@ -84,7 +84,7 @@ def _forecast_batch(
     times = torch.arange(last + 1, dtype=torch.float32, device=device()).expand(len(names), -1)
     predictor.to(device()).eval()
     with torch.no_grad():
-        return predictor(Seen(frames, xy, times[:, seen]), times[:, T0:])
+        return predictor.forecast(Seen(frames, xy, times[:, seen]), times[:, T0:])
 
 
 def _rows(clip: str, seen_frames: int, stop: int, found: Forecast, i: int) -> pd.DataFrame:

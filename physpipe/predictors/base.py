@@ -8,6 +8,7 @@ import torch
 from torch import Tensor, nn
 
 from physpipe.core.params import Section
+from physpipe.predictors.misses import Misses
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Forecast:
     mean: Tensor
     """(B, N, K, 2) pixels."""
     cov: Tensor | None = None
-    """(B, N, K, 2, 2) square pixels, of probabilistic predictors only."""
+    """(B, N, K, 2, 2) square pixels; None where nothing is known of how sure it is."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +66,19 @@ class Predictor(nn.Module, ABC):
         """`objects`: K, the number of objects in every clip."""
         super().__init__()
         self.objects = objects
+        self.misses = Misses()
 
     @abstractmethod
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
         """Positions at `asked_times` (B, N) frames since the first one seen."""
+
+    def forecast(self, seen: Seen, asked_times: Tensor) -> Forecast:
+        """As `forward`, with a covariance even where that has none: as sure as it was right on held-out film."""
+        made = self(seen, asked_times)
+        if made.cov is not None or not self.misses.known:
+            return made
+        cov = self.misses(asked_times - seen.times[:, self.seen_frames - 1, None])
+        return Forecast(made.mean, cov.unsqueeze(2).expand(-1, -1, self.objects, -1, -1))
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Mean distance from the target in pixels; its square would be ruled by the few wildest windows."""
@@ -76,7 +86,14 @@ class Predictor(nn.Module, ABC):
         return distance.mean(), {"train_last_px": distance[:, -1].mean().item()}
 
     def calibrate(self, held_out: Window) -> None:
-        """Once all else is learned: fits how sure it is to stretches of film that nothing was learned from."""
+        """Once all else is learned: fits how sure it is to stretches of film that nothing was learned from.
+
+        One that sees the end misses least near both ends, which no power of time describes: nothing is fitted to it.
+        """
+        made = self(held_out.seen, held_out.asked_times)
+        if made.cov is None and not self.sees_end:
+            ahead = held_out.asked_times[0] - held_out.seen.times[0, -1]
+            self.misses.fit(held_out.target - made.mean, ahead)
 
     def validation_loss(self, batch: Window) -> Tensor:
         """What validation minimises: the mean distance from the target at the last time asked for, in pixels."""

@@ -6,6 +6,8 @@ import torch
 from torch import Tensor
 
 LOG_TAU = math.log(2 * math.pi)
+SURE = -2 * math.log(1 - 0.9)
+"""Squared Mahalanobis distance within which 90 % of a bivariate Gaussian lie."""
 
 
 def covariance(std: Tensor, angle: Tensor) -> Tensor:

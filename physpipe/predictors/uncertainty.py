@@ -6,7 +6,6 @@ nobody can foresee: little in the next frame, and at most as far as it sways. An
 by what it has got wrong of a scene for good. All of that is fitted to held-out film.
 """
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -14,12 +13,11 @@ import torch
 from torch import Tensor, nn
 
 from physpipe.predictors.gaussian import determinant, squared_mahalanobis
+from physpipe.predictors.misses import fitted, power
 from physpipe.predictors.terrain_law import Motion
 
 WIDTH = (1 / 64, 1 / 256, 1 / 256)
 """Steps of the differences in position and velocity, halves of the frame's longer side: a pixel, a quarter of one."""
-SURE = -2 * math.log(1 - 0.9)
-"""Squared Mahalanobis distance within which 90 % of a bivariate Gaussian lie."""
 WILD = 25.0
 """Squared Mahalanobis distance from which a miss counts no more: a lost track would rule the fit."""
 
@@ -79,7 +77,7 @@ class Spread(nn.Module):
         ahead = torch.arange(1.0, len(along) + 1, device=own.device)
         around = seen + sway * (1 - torch.exp(-(ahead / self.logs[6].exp()).square()))
         cov = own + around[:, None, None, None] * torch.eye(2, device=own.device)
-        return (_powers(len(along)).to(cov) @ self.scale).exp()[:, None, None, None] * cov
+        return power(self.scale, ahead)[:, None, None, None] * cov
 
     def fit(self, jacobians: Tensor, missed: Tensor, rounds: int) -> None:
         """To how far forecasts missed, (B, N, K, 2): most likely, then scaled so that 90 % lie in the 90 % ellipse.
@@ -98,13 +96,7 @@ class Spread(nn.Module):
                 optimiser.step()
         self.logs.requires_grad_(False)
         distances = squared_mahalanobis(missed, self(jacobians))
-        short = (distances.float().transpose(1, 2).flatten(0, 1).quantile(0.9, dim=0) / SURE).log()
-        self.scale.copy_(torch.linalg.pinv(_powers(len(short)).to(short)) @ short)
-
-
-def _powers(frames: int) -> Tensor:
-    """(N, 2): 1, and the logarithm of how many frames it is ahead."""
-    return torch.stack([torch.ones(frames), torch.arange(1.0, frames + 1).log()], dim=1)
+        self.scale.copy_(fitted(distances, torch.arange(1.0, distances.shape[1] + 1, device=distances.device)))
 
 
 def _joined(motion: Motion) -> Tensor:

@@ -47,7 +47,7 @@ def run(name: str) -> Path:
 def test_a_section_is_trained_as_its_kind_and_forecast_as_far_as_it_goes(project, name, last):
     table = forecasts.load(run(name))
     assert table.loc[table["clip"] == "c3", "frame"].agg(["min", "max"]).tolist() == [4, last]
-    assert ("cov_xx" in table) == (name == "probnet")
+    assert ("cov_xx" in table) == (name != "interpnet")
 
 
 def test_a_set_without_interpolation_refuses_what_is_trained_to_it(project):
