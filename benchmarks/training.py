@@ -1,0 +1,92 @@
+"""Times the training of predictors on the data sets of the last `dvc repro`; prints it and keeps it.
+
+    python benchmarks/training.py bowls bowls2
+
+Minutes that each training takes as params.yaml has it, but for precision and threads: STEPS of its steps are timed, and
+its validations left out. Shows what bfloat16 and a second thread are worth. Writes benchmarks/training.json.
+"""
+
+import json
+import sys
+import time
+from datetime import date
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import torch
+from speed import processor
+
+from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.horizon import PredictParams
+from physpipe.core.params import read, read_value
+from physpipe.io import tracks
+from physpipe.io.clips import ClipSet
+from physpipe.learning.training import fit
+from physpipe.predictor_learning.predicting import LearnedParams, learned_params, predictor_class
+from physpipe.predictor_learning.windows import TrackWindows
+
+OUT = Path(__file__).with_name("training.json")
+WARM, STEPS = 4, 40
+SETTINGS = {"float32": ("float32", 1), "bfloat16": ("bfloat16", 1), "bfloat16, 2 threads": ("bfloat16", 2)}
+"""What to call it, precision and threads: plain first."""
+
+
+def windows(name: str, params: LearnedParams) -> TrackWindows:
+    """What it learns from."""
+    kind, predict = predictor_class(params.kind), read(f"datasets.{name}.predict", PredictParams)
+    last = predict.last_frame(params.trained_to, f"datasets.{name}.predict")
+    table = tracks.load(Path(f"data/tracks/{name}.parquet"))
+    clips = ClipSet(Path("data/clips") / name)
+    return TrackWindows(clips, table, "train", kind.seen_frames, last, kind.sees_end, kind.steadies, predict.mirrors)
+
+
+def minutes(params: LearnedParams, found: TrackWindows, precision: str, threads: int, seed: int) -> float:
+    """A whole training's, by the seconds of a few steps; one that begins otherwise does for the same share of them."""
+    prepare(ComputeParams(seed=seed, threads=threads))
+    whole, model = params.fit.steps, params.model.model_dump()
+    if "matched_steps" in model:
+        model["matched_steps"] = round(model["matched_steps"] * STEPS / whole)
+    net = predictor_class(params.kind)(type(params.model)(**model), found.objects)
+    seconds = 0.0
+    for steps in (WARM, STEPS):
+        short = params.fit.model_copy(update={"steps": steps, "valid_every": steps, "precision": precision})
+        with TemporaryDirectory() as folder:
+            start = time.perf_counter()
+            fit(
+                net,
+                lambda generator: found.draw(params.fit.batch_size, params.windows, generator),
+                lambda: (0.0,),
+                short,
+                seed,
+                Path(folder) / "training.pt",
+                f"{steps} steps",
+            )
+            seconds = time.perf_counter() - start
+    return round(seconds / STEPS * whole / 60, 2)
+
+
+def main(names: list[str]) -> None:
+    """Measures all predictors on the data sets `names`; those measured before on the same machine are kept."""
+    machine = f"{processor()}, torch {torch.__version__}"
+    kept = json.loads(OUT.read_text()) if OUT.is_file() else {}
+    new: dict[str, Any] = {"machine": machine, "minutes": {}}
+    table = kept if kept.get("machine") == machine else new
+    table |= {"date": date.today().isoformat()}
+    for name in names:
+        rows = table["minutes"].setdefault(name, {})
+        for predictor in read_value("predictors"):
+            kind = predictor_class(read_value(f"predictors.{predictor}.kind"))
+            predict = read(f"datasets.{name}.predict", PredictParams)
+            params = read(f"predictors.{predictor}", learned_params(kind)).on(predict)
+            found = windows(name, params)
+            rows[predictor] = {
+                what: minutes(params, found, *setting, read("compute", ComputeParams).seed)
+                for what, setting in SETTINGS.items()
+            }
+            print(f"| {name} | {predictor} | " + " | ".join(f"{each} min" for each in rows[predictor].values()) + " |")
+    OUT.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
