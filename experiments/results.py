@@ -17,7 +17,7 @@ from typing import Any
 
 import yaml
 
-from experiments import forecast_runs, forecast_tables, tables, tracker_runs, tuning_runs
+from experiments import findings, forecast_runs, forecast_tables, tables, tracker_runs, tuning_runs
 from experiments.queue import run_missing
 from experiments.records import CommandError, read_results
 from experiments.spread import Row
@@ -100,7 +100,7 @@ def main() -> None:
     for name, table in (("trackers", trackers), ("predictors", predictors), ("finetuned", together)):
         _save(name, table)
     unrun = absent | {name: "not run yet" for name in names if name not in trackers}
-    pages = [tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid)]
+    pages = [tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid), findings.page(predictors)]
     PAGE.write_text("\n".join([*pages, tuning_runs.page(together, list(grid))]))
     for experiment, reason in failed.items():
         print(f"failed {experiment.label}: {reason}", file=sys.stderr)
