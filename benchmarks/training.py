@@ -17,7 +17,7 @@ from typing import Any
 import torch
 from speed import processor
 
-from physpipe.core.determinism import ComputeParams, prepare
+from physpipe.core.determinism import ComputeParams, device, prepare
 from physpipe.core.horizon import PredictParams
 from physpipe.core.params import read, read_value
 from physpipe.io import tracks
@@ -44,12 +44,12 @@ def windows(name: str, params: LearnedParams) -> TrackWindows:
 def minutes(params: LearnedParams, found: TrackWindows, precision: str, threads: int, seed: int) -> float:
     """A whole training's, by the seconds of a few steps; one that begins otherwise does for the same share of them."""
     prepare(ComputeParams(seed=seed, threads=threads))
-    whole, model = params.fit.steps, params.model.model_dump()
-    if "matched_steps" in model:
-        model["matched_steps"] = round(model["matched_steps"] * STEPS / whole)
-    net = predictor_class(params.kind)(type(params.model)(**model), found.objects)
     seconds = 0.0
     for steps in (WARM, STEPS):
+        model = params.model.model_dump()
+        if "matched_steps" in model:
+            model["matched_steps"] = round(model["matched_steps"] * steps / params.fit.steps)
+        net = predictor_class(params.kind)(type(params.model)(**model), found.objects)
         short = params.fit.model_copy(update={"steps": steps, "valid_every": steps, "precision": precision})
         with TemporaryDirectory() as folder:
             start = time.perf_counter()
@@ -63,22 +63,24 @@ def minutes(params: LearnedParams, found: TrackWindows, precision: str, threads:
                 f"{steps} steps",
             )
             seconds = time.perf_counter() - start
-    return round(seconds / STEPS * whole / 60, 2)
+    return round(seconds / STEPS * params.fit.steps / 60, 2)
 
 
 def main(names: list[str]) -> None:
     """Measures all predictors on the data sets `names`; those measured before on the same machine are kept."""
-    machine = f"{processor()}, torch {torch.__version__}"
+    machine = f"{processor()}, {device()}, torch {torch.__version__}"
     kept = json.loads(OUT.read_text()) if OUT.is_file() else {}
     new: dict[str, Any] = {"machine": machine, "minutes": {}}
     table = kept if kept.get("machine") == machine else new
     table |= {"date": date.today().isoformat()}
     for name in names:
         rows = table["minutes"].setdefault(name, {})
+        predict = read(f"datasets.{name}.predict", PredictParams)
         for predictor in read_value("predictors"):
             kind = predictor_class(read_value(f"predictors.{predictor}.kind"))
-            predict = read(f"datasets.{name}.predict", PredictParams)
             params = read(f"predictors.{predictor}", learned_params(kind)).on(predict)
+            if params.trained_to == "interpolation" and predict.interpolation is None:
+                continue
             found = windows(name, params)
             rows[predictor] = {
                 what: minutes(params, found, *setting, read("compute", ComputeParams).seed)

@@ -47,7 +47,7 @@ def ifs_generalises(block: Block) -> tuple[str, bool] | None:
 
 
 def vin_fails(block: Block) -> tuple[str, bool] | None:
-    """`vin`, which sees frames alone, errs more at T than a straight line through the first positions."""
+    """On any ground `vin`, which sees frames alone, errs more at T than a straight line through the first positions."""
     vin, straight = _error(block, "vin", "T"), _error(block, "linear", "T")
     if vin is None or straight is None:
         return None
@@ -57,7 +57,7 @@ def vin_fails(block: Block) -> tuple[str, bool] | None:
 FINDINGS = {
     "Tensor states beat vector states from noisy tracks": (tensor_beats_vector, ("tracks",)),
     "IFS generalises further than the nets": (ifs_generalises, tuple(LEARNED_FROM)),
-    "VIN fails on terrain": (vin_fails, tuple(LEARNED_FROM)),
+    "VIN fails": (vin_fails, tuple(LEARNED_FROM)),
 }
 """Sentence to how it is read off a block of rows, and the blocks it is about."""
 

@@ -14,7 +14,7 @@ SCHEMA_VERSION = 1
 KEY = ["clip", "object", "frame"]
 DTYPES = {"clip": "str", "object": "int16", "frame": "int32", "x": "float32", "y": "float32"}
 COVARIANCE = {"cov_xx": "float32", "cov_xy": "float32", "cov_yy": "float32"}
-"""Square pixels; only probabilistic predictors have these columns."""
+"""Square pixels; forecasts by what learned nothing, or sees the end, lack these columns."""
 
 
 class ClipForecast(NamedTuple):

@@ -96,7 +96,7 @@ def learn_predictor(
 
 @torch.no_grad()
 def calibrate(predictor: Predictor, clips: ClipSet, table: pd.DataFrame, valid: TrackWindows, count: int) -> None:
-    """Fits how sure it is, once all else is learned, to the `count` validation windows that begin as forecasts do."""
+    """Fits how sure it is, once all else is learned, to the `count` validation windows that begin soonest."""
     far = valid if predictor.sees_end else _twice_as_far(valid, clips, table)
     predictor.calibrate(far.batch(far.early(count).tolist()))
 

@@ -32,7 +32,8 @@ class WindowParams(Section):
     first_share: float = Field(ge=0, le=1)
     """Share of the windows drawn in training that begin at a clip's first frame, as the forecasts do."""
     valid_windows: int = Field(ge=1)
-    """Windows of the validation clips, evenly spread, that a validation looks at."""
+    """Windows of the validation clips: evenly spread ones that a validation looks at, and the soonest to begin, to
+    which is fitted how sure forecasts are."""
 
 
 class TrackWindows:

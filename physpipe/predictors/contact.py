@@ -1,8 +1,9 @@
 """What objects do to each other when they meet: a push along the line between them, and spin that fades (ours).
 
 Two balls that run into each other push along the line between their middles, by as much as momentum and the restitution
-of their kind ask for (Newton's law of impact). Their spin stays what it was, so each slides until friction, which is
-constant while it slides, has brought speed and spin together again: a solid ball gives back 2/7 of what it slid by.
+of their kind ask for (Newton's law of impact). Most of their spin stays what it was, so each slides until friction,
+which is constant while it slides, has brought speed and spin together again: a solid ball gives back 2/7 of what it
+slid by.
 """
 
 from typing import NamedTuple
@@ -16,7 +17,7 @@ from physpipe.predictors.layers import reader, zero_linear, zero_reader
 REACH = 0.2
 """Distance of the middles when two objects touch, before anything is learned; halves of the frame's longer side."""
 SOFT = 1 / 128
-"""How much nearer they come before a touch is certain: half a pixel of 128; what learns the reach."""
+"""Distance over which a touch would be ever more certain, for gradients alone: half a pixel of 128."""
 RESTITUTION = 0.8
 """Speed of parting over speed of meeting, before anything is learned."""
 KEPT = 0.8
@@ -30,11 +31,13 @@ SEEING = 0.02
 SHORT = 1.3
 """By how much the reach may look shorter on a slope."""
 CLEAR = 1.2
-"""Distances from so many times the reach on are no touch, whatever the noise of the tracks."""
+"""Objects so many times as far apart as they reach do not touch, whatever the noise of their tracks."""
+FEW = 0.05
+"""Share of the nearest in a batch that says nothing: tracks that are mixed up may coincide."""
 TINY = 1e-6
 """Added to squared lengths, so that none is 0: the square of a sixteenth of a pixel of 128."""
-GRAZING = 1e-7
-"""Likewise to what two that barely touch come nearer by."""
+GRAZING = 1e-3
+"""Share of a frame by which touches are smeared, so that grazing ones have a finite gradient."""
 
 
 class Impact(NamedTuple):
@@ -57,10 +60,10 @@ class Contact(nn.Module):
 
     def __init__(self, channels: int, code: int, hidden: int):
         super().__init__()
-        self.slope = reader(channels, hidden, 2)  # not 0 at first: on flat ground no slope is better than none
+        self.slope = reader(channels, hidden, 2)  # not 0 at first, where its gradient is 0
         self.ground = zero_reader(channels, hidden, 2, nn.SiLU)
-        self.size = zero_linear(code, 1)
-        self.weight = zero_linear(code, 1)
+        self.size = zero_linear(code, 1, bias=False)
+        self.weight = zero_linear(code, 1, bias=False)
         self.press = zero_reader(channels + 2, hidden, 1, nn.SiLU)
         self.reach = nn.Parameter(torch.tensor(REACH).log())
         self.bounce = nn.Parameter(torch.tensor(RESTITUTION).logit())
@@ -70,28 +73,30 @@ class Contact(nn.Module):
     def forward(self, place: Tensor, displacement: Tensor, between: Tensor, codes: Tensor) -> Impact:
         """`place`, `displacement`: (B, M, K, 2); `between`: (B, M, K, K, C) ground; `codes`: (B, K, D)."""
         apart, closing = (each.unsqueeze(2) - each.unsqueeze(3) for each in (place, displacement))  # from i to j
-        large, heavy = (each(codes).float().squeeze(-1) for each in (self.size, self.weight))
-        reach = (self.reach + torch.tanh(large.unsqueeze(1) + large.unsqueeze(2)).unsqueeze(1)).exp()
+        heavy = self.weight(codes).float().squeeze(-1)
         share = torch.sigmoid(heavy.unsqueeze(1) - heavy.unsqueeze(2)).unsqueeze(1)  # of j in the mass of both
-        slope = self.slope(between).float()
+        slope, reach = self.slope(between).float(), self.reaches(codes).unsqueeze(1)
         harder, spinning = torch.tanh(self.ground(between).float()).unbind(-1)
         when, nearest = _touch(_risen(apart, slope), _risen(closing, slope), reach)
         line = _risen(apart + when.unsqueeze(-1) * closing, slope)
         line = line / _length(line).unsqueeze(-1)
-        met = torch.sigmoid((reach - nearest) / SOFT) * torch.relu(-(_risen(closing, slope) * line).sum(-1))
-        met = met * (1 - torch.eye(place.shape[2], device=place.device))
-        push = -((1 + torch.sigmoid(self.bounce + harder)) * share * met).unsqueeze(-1) * line[..., :2]
+        meeting = _met(nearest, reach) * torch.relu(-(_risen(closing, slope) * line).sum(-1))
+        meeting = meeting * (1 - torch.eye(place.shape[2], device=place.device))
+        push = -((1 + torch.sigmoid(self.bounce + harder)) * share * meeting).unsqueeze(-1) * line[..., :2]
         left, kept = (1 - when).unsqueeze(-1), torch.sigmoid(self.spin + spinning).unsqueeze(-1)
         return Impact(push.sum(3), (left * push).sum(3), (kept * push).sum(3))
 
-    @torch.no_grad()
-    def see_distance(self, nearest: Tensor) -> None:
-        """Moves the reach towards how near objects came in a batch: from far too short a one nothing is learned."""
-        self.reach.lerp_((SHORT * nearest.clamp_min(TINY)).log(), SEEING)
+    def reaches(self, codes: Tensor) -> Tensor:
+        """(B, K, K) distance of the middles at which each two of `codes` (B, K, D) touch."""
+        large = self.size(codes).float().squeeze(-1)
+        return (self.reach + torch.tanh(large.unsqueeze(1) + large.unsqueeze(2))).exp()
 
-    def surely_apart(self) -> Tensor:
-        """A distance at which no two touch."""
-        return CLEAR * self.reach.detach().exp()
+    @torch.no_grad()
+    def see_distances(self, nearest: Tensor) -> None:
+        """Moves the reach towards how `nearest` (B,) any two came in stretches of film: else it may be far too short
+        to be learned."""
+        seen = SHORT * torch.quantile(nearest, FEW).clamp_min(TINY)
+        self.reach.lerp_(seen.log(), SEEING)
 
     def rolled(self, sliding: Tensor, velocity: Tensor, here: Tensor) -> tuple[Tensor, Tensor]:
         """Change of displacement by friction in a frame, and what `sliding` (B, M, K, 2) is left after it.
@@ -108,10 +113,16 @@ class Contact(nn.Module):
 def _touch(apart: Tensor, closing: Tensor, reach: Tensor) -> tuple[Tensor, Tensor]:
     """When in the frame, from 0 to 1, two that are `apart` (..., 3) are at `reach`; and how near they come in it."""
     square = closing.square().sum(-1) + TINY
-    along = (apart * closing).sum(-1)
-    nearest = _length(apart + (-along / square).clamp(0, 1).unsqueeze(-1) * closing)
-    root = torch.relu(along.square() - square * (apart.square().sum(-1) - reach.square()))
-    return ((-along - (root + GRAZING).sqrt()) / square).clamp(0, 1), nearest
+    along = (apart * closing).sum(-1) / square
+    nearest = _length(apart + (-along).clamp(0, 1).unsqueeze(-1) * closing)
+    root = torch.relu(along.square() - (apart.square().sum(-1) - reach.square()) / square)
+    return (-along - (root + GRAZING**2).sqrt() + GRAZING).clamp(0, 1), nearest
+
+
+def _met(nearest: Tensor, reach: Tensor) -> Tensor:
+    """1 where two came within their reach, else 0; with the gradient of a soft step, which the reach is learned by."""
+    soft = torch.sigmoid((reach - nearest) / SOFT)
+    return soft + ((nearest < reach).to(soft) - soft).detach()
 
 
 def _risen(way: Tensor, slope: Tensor) -> Tensor:

@@ -125,9 +125,9 @@ def zero_reader(inputs: int, hidden: int, outputs: int, activation: Callable[[],
     return nn.Sequential(*layers, last)
 
 
-def zero_linear(inputs: int, outputs: int) -> nn.Linear:
+def zero_linear(inputs: int, outputs: int, bias: bool = True) -> nn.Linear:
     """Layer that answers 0 before it has learned anything."""
-    layer = nn.Linear(inputs, outputs)
-    nn.init.zeros_(layer.weight)
-    nn.init.zeros_(layer.bias)
+    layer = nn.Linear(inputs, outputs, bias)
+    for each in layer.parameters():
+        nn.init.zeros_(each)
     return layer

@@ -1,6 +1,6 @@
 """How far forecasts miss, as a power of how far ahead they are: fitted to film that nothing was learned from (ours).
 
-What a predictor that gives no covariance is as sure as; and what the covariance of one that does is corrected by.
+What a predictor that gives no covariance is as sure as; and what the covariance of `terrain` is corrected by.
 """
 
 import torch
@@ -10,7 +10,7 @@ from physpipe.predictors.gaussian import SURE
 
 
 class Misses(nn.Module):
-    """Two numbers behind a circular covariance that 90 % of the held-out misses were within the 90 % ellipse of."""
+    """The power of time that is nearest to the circles that held 90 % of the held-out misses at each time."""
 
     law: Tensor
 

@@ -3,7 +3,8 @@
 The environment is encoded once from the seen frames into a map. At every step the map is read at the predicted
 position, a small network gives the law of motion there, and velocity and position follow: v += a, p += v. What the
 paper's conclusion asks for: the environment is remembered however long the forecast, and only the motion is propagated.
-The camera's own motion is taken off the seen positions, and a forecast says how sure it is.
+Objects that meet push each other. The camera's own motion is taken off the seen positions, and a forecast says how sure
+it is.
 
 Learned from forecasts alone the law gets stuck where it is right on the whole and nowhere in particular. So it is first
 matched, place by place, to the changes of velocity along smoothed tracks; then whole forecasts are trained, too.
@@ -93,11 +94,14 @@ class Terrain(Predictor):
         return distance.mean() + self.params.matched_weight_s2 * batch.frames_per_s**2 * mismatch, parts
 
     def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit, frames_per_s: float) -> Tensor:
-        """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame."""
+        """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame.
+
+        Of frames far from any meeting: smoothing smears what happens in one over all frames around.
+        """
         place, velocity, turn = smoothed(track, odd(self.params.smoothing_s * frames_per_s))
         found = self.law(scene, Motion.rolling(place, velocity)).velocity - velocity
-        free = self.law.untouched(track, width=track.shape[1] - place.shape[1] + 1)
-        return (free * distance_px(unit.px * found, unit.px * turn)).mean()
+        free = self.law.untouched(scene, track, width=track.shape[1] - place.shape[1] + 1)
+        return (free * distance_px(unit.px * found, unit.px * turn)).sum() / (free.sum() * self.objects).clamp_min(1)
 
     def calibrate(self, held_out: Window) -> None:
         """Fits the covariance, which is of no use before."""

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import max_pool1d
 
-from physpipe.predictors.contact import Contact
+from physpipe.predictors.contact import CLEAR, Contact
 from physpipe.predictors.kinematics import FASTEST, POWERS, SPEED, change
 from physpipe.predictors.layers import bilinear_weights, read_at, zero_linear, zero_reader
 
@@ -41,7 +41,7 @@ class Scene(NamedTuple):
 
 
 class Law(nn.Module):
-    """Acceleration by the ground, quadratic in the velocity as gravity, friction and bends are; and by other objects.
+    """Acceleration by the ground, quadratic in the velocity as gravity, friction and bends are; and what meetings do.
 
     The coefficients may depend on the velocity and on the place ahead, since a cushion turns only what runs into it.
     """
@@ -78,14 +78,15 @@ class Law(nn.Module):
     def see_distances(self, track: Tensor) -> None:
         """Where nothing is learned of touches yet: takes from tracks (B, T, K, 2) how near objects come."""
         if self.contact is not None:
-            self.contact.see_distance(nearest_two(track).min())
+            self.contact.see_distances(nearest_two(track).amin(1))
 
-    def untouched(self, track: Tensor, width: int) -> Tensor:
+    def untouched(self, scene: Scene, track: Tensor, width: int) -> Tensor:
         """(B, T - width + 1, 1) 1 where none can have met another in the `width` frames of `track` from there on."""
         if self.contact is None:
             return torch.ones_like(track[:, width - 1 :, :1, 0])
         nearest = -max_pool1d(-nearest_two(track), width, stride=1)
-        return (nearest > self.contact.surely_apart()).to(track).unsqueeze(-1)
+        clear = CLEAR * self.contact.reaches(scene.objects).detach().amax((1, 2))
+        return (nearest > clear[:, None]).to(track).unsqueeze(-1)
 
 
 def nearest_two(track: Tensor) -> Tensor:

@@ -17,7 +17,8 @@ from physpipe.predictors.misses import fitted, power
 from physpipe.predictors.terrain_law import Motion
 
 WIDTH = (1 / 64, 1 / 256, 1 / 256)
-"""Steps of the differences in position and velocity, halves of the frame's longer side: a pixel, a quarter of one."""
+"""Steps of the differences in position, velocity and sliding, halves of the frame's longer side: a pixel of 128, then a
+quarter of one."""
 WILD = 25.0
 """Squared Mahalanobis distance from which a miss counts no more: a lost track would rule the fit."""
 

@@ -21,7 +21,7 @@ class Missed(NamedTuple):
     by_px: Array
     """(N, K, 2) truth less forecast in px, NaN where the truth is not known."""
     cov: Array | None
-    """(N, K, 2, 2) px^2 of the forecast, if it is probabilistic."""
+    """(N, K, 2, 2) px^2 of the forecast, if it has covariances."""
 
     def at(self, frame: int) -> Array:
         """(K, 2) px at frame number `frame`; no rows where it is not forecast or beyond the clip's end."""

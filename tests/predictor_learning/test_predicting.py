@@ -1,3 +1,4 @@
+import numpy as np
 import pandas as pd
 import pytest
 import torch
@@ -16,7 +17,7 @@ from physpipe.predictor_learning.predicting import (
     predictor_class,
     save_predictor,
 )
-from physpipe.predictor_learning.windows import WindowParams
+from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.probnet import ProbNetParams
 from physpipe.predictors.tensor_state import TensorStateParams
@@ -99,6 +100,13 @@ def test_how_sure_to_be_is_judged_twice_as_far_ahead_where_clips_are_as_long(
     monkeypatch.setattr(predictor_class("dispnet"), "calibrate", lambda self, held_out: told.append(held_out))
     learn("dispnet", *falling_balls(), tmp_path / "c.pt", last_frame)
     assert [window.asked_times[0, -1].item() for window in told] == [judged_to]
+
+
+def test_how_sure_to_be_is_judged_by_the_windows_that_begin_soonest(tmp_path, monkeypatch, falling_balls):
+    told = []
+    monkeypatch.setattr(TrackWindows, "early", lambda self, count: told.append(count) or np.array([0]))
+    learn("dispnet", *falling_balls(), tmp_path / "c.pt")
+    assert told == [params_of("dispnet").windows.valid_windows]
 
 
 def test_windows_with_a_lost_object_are_counted_and_never_learned_from(tmp_path, falling_balls, capsys):

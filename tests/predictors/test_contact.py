@@ -53,10 +53,39 @@ def test_a_ball_slides_by_the_share_of_the_push_that_spins_it_not():
     torch.testing.assert_close(impact.slid, 0.7 * impact.push)
 
 
-def test_speed_of_parting_over_speed_of_meeting_is_the_restitution():
-    impact = met(contact(0.6), [(0, 0), (REACH + 0.01, 0)], [(0.06, 0), (-0.02, 0)])
-    parting = 0.06 + 0.02 + (impact.push[0, 0, 0, 0] - impact.push[0, 0, 1, 0]).item()
-    assert -parting / 0.08 == pytest.approx(0.6, abs=0.02)
+@pytest.mark.parametrize("phase", [0.05, 0.3, 0.55, 0.8, 0.98])
+@pytest.mark.parametrize("closing", [0.02, 0.05, 0.1])
+def test_speed_of_parting_over_speed_of_meeting_is_the_restitution_whenever_in_a_frame_they_touch(phase, closing):
+    made, places = contact(0.6), torch.tensor([[0.0, 0.0], [REACH + (1 + phase) * closing, 0.0]])
+    displacements = torch.tensor([[closing, 0.0], [0.0, 0.0]])
+    for _ in range(6):
+        impact = met(made, places.tolist(), displacements.tolist())
+        places = places + displacements + impact.moved[0, 0]
+        displacements = displacements + impact.push[0, 0]
+    parting = (displacements[1, 0] - displacements[0, 0]).item()
+    assert parting / closing == pytest.approx(0.6, abs=0.01)
+    since = 6 - 1 - phase  # frames since they touched
+    assert (places[1, 0] - places[0, 0] - REACH).item() == pytest.approx(since * parting, abs=0.01 * closing)
+
+
+def test_the_heavier_object_is_pushed_less_and_momentum_stays():
+    made = contact()
+    generator = torch_generator(2)
+    torch.randn(1, 1, 2, 2, GROUND, generator=generator)
+    made.weight.weight.data = torch.randn(1, CODE, generator=torch_generator(5))
+    mass = made.weight(torch.randn(1, 2, CODE, generator=generator)).exp()[0]
+    push = met(made, [(0, 0), (REACH + 0.02, 0)], [(0.06, 0), (-0.02, 0)]).push[0, 0]
+    assert abs(mass[0] / mass[1] - 1) > 0.2
+    torch.testing.assert_close(mass[0] * push[0], -mass[1] * push[1])
+
+
+def test_larger_objects_touch_from_further_away():
+    made = contact()
+    codes = torch.tensor([[[1.0, 0, 0], [1.0, 0, 0], [0, 0, 0]]])
+    made.size.weight.data = torch.tensor([[0.1, 0.0, 0.0]])
+    reaches = made.reaches(codes)[0]
+    assert reaches[0, 1] > reaches[0, 2] > reaches[2, 2]
+    assert reaches[2, 2].item() == pytest.approx(REACH)
 
 
 def test_a_glancing_touch_pushes_along_the_line_between_the_middles():
@@ -131,7 +160,8 @@ def test_gradients_are_finite_however_objects_lie():
 
 def test_the_reach_begins_where_objects_were_seen_to_come_nearest():
     made = contact()
+    nearest = torch.full((64,), 0.37)
+    nearest[0] = 0  # two tracks that coincide, by mistake
     for _ in range(600):
-        made.see_distance(torch.tensor(0.37))
+        made.see_distances(nearest)
     assert made.reach.exp().item() == pytest.approx(1.3 * 0.37, rel=1e-3)
-    assert made.surely_apart().item() > 0.37

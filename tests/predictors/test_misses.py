@@ -23,6 +23,12 @@ class Stays(Predictor):
         return Forecast(seen.xy[:, -1:].expand(-1, asked_times.shape[1], -1, -1))
 
 
+class KnowsHowSure(Stays):
+    def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
+        mean = super().forward(seen, asked_times).mean
+        return Forecast(mean, 7 * torch.eye(2).expand(*mean.shape, 2))
+
+
 class StaysUpTo(Stays):
     sees_end = True
 
@@ -60,13 +66,14 @@ def test_a_predictor_without_a_covariance_is_as_sure_as_it_was_right_on_held_out
     assert (inside - 0.9).abs().max() < 0.045  # four standard errors of 400 clips of two balls
 
 
-def test_its_positions_and_what_it_says_itself_stay():
+def test_positions_stay_and_so_does_what_a_predictor_says_itself():
     window = wandering(3, seed=3)
-    net = Stays(Section(), 2)
-    net.calibrate(window)
-    torch.testing.assert_close(
-        net.forecast(window.seen, window.asked_times).mean, net(window.seen, window.asked_times).mean
-    )
+    for net in (Stays(Section(), 2), KnowsHowSure(Section(), 2)):
+        net.calibrate(window)
+        made = net.forecast(window.seen, window.asked_times)
+        torch.testing.assert_close(made.mean, net(window.seen, window.asked_times).mean)
+    assert not net.misses.known
+    torch.testing.assert_close(made.cov, 7 * torch.eye(2).expand_as(made.cov))
 
 
 def test_no_power_of_time_is_fitted_to_one_that_sees_the_end():

@@ -10,6 +10,7 @@ from physpipe.core.determinism import torch_generator
 from physpipe.predictors.base import Seen, Window
 from physpipe.predictors.kinematics import odd
 from physpipe.predictors.terrain import Terrain, TerrainParams
+from physpipe.predictors.terrain_law import Motion, Scene
 
 HEIGHT, WIDTH = 40, 48
 SMALL = TerrainParams(
@@ -80,6 +81,32 @@ def test_an_object_is_pushed_by_another_only_where_there_is_one():
     assert terrain(objects=1).law.contact is None
 
 
+def test_two_balls_on_flat_ground_roll_meet_slide_and_roll_on_as_mechanics_has_it():
+    """Head on, one at rest: equal masses, restitution 0.8, and of what each gained 2/7 goes back while it slides."""
+    law = terrain(objects=2).law
+    assert law.contact is not None
+    law.contact.spin.data = torch.tensor(20.0)  # spins as before
+    law.contact.grip.data = torch.tensor(0.004).log()
+    reach, fast = law.contact.reach.exp().item(), 0.05
+    scene = Scene(torch.zeros(1, 16, 5, 6), torch.zeros(1, 16), torch.zeros(1, 2, SMALL.code), torch.tensor([2.0, 1.7]))
+    place = torch.tensor([[[[-reach - 1.5 * fast, 0.0], [0.0, 0.0]]]])
+    for each in law.contact.slope.parameters():
+        each.data.zero_()
+    now, paths = Motion.rolling(place, torch.tensor([[[[fast, 0.0], [0.0, 0.0]]]])), []
+    with torch.no_grad():
+        for _ in range(30):
+            now = law(scene, now)
+            paths.append(now)
+    torch.testing.assert_close(paths[0].velocity[0, 0, :, 0], torch.tensor([fast, 0.0]))
+    hit = torch.tensor([0.1, 0.9]) * fast  # Newton's law of impact
+    slower = torch.tensor([0.9, -0.9]) * fast * 2 / 7
+    torch.testing.assert_close(paths[-1].velocity[0, 0, :, 0], hit + slower, rtol=0, atol=2e-4)
+    friction = torch.tensor([0.004, -0.004])
+    torch.testing.assert_close(paths[1].velocity[0, 0, :, 0], hit + friction, rtol=0, atol=2e-4)
+    moved = torch.tensor([-reach - 0.5 * fast, 0.0]) + 0.5 * (torch.tensor([fast, 0.0]) + hit) + friction
+    torch.testing.assert_close(paths[1].place[0, 0, :, 0], moved, rtol=0, atol=3e-4)
+
+
 def test_what_a_meeting_smears_over_a_smoothed_track_teaches_the_ground_nothing():
     """Two balls that meet at frame 10."""
     ahead = torch.linspace(-0.5, 0.5, 21).abs() + 0.05
@@ -87,8 +114,23 @@ def test_what_a_meeting_smears_over_a_smoothed_track_teaches_the_ground_nothing(
     law = terrain(objects=2).law
     for _ in range(600):
         law.see_distances(track)
-    free = law.untouched(track, width=5)[0, :, 0]
+    scene = Scene(torch.zeros(1, 16, 5, 6), torch.zeros(1, 16), torch.zeros(1, 2, SMALL.code), torch.tensor([2.0, 1.7]))
+    free = law.untouched(scene, track, width=5)[0, :, 0]
     assert free.tolist() == [float(10 not in range(at, at + 5)) for at in range(17)]
+
+
+def test_where_objects_meet_the_law_is_not_matched_to_the_tracks():
+    window = springs(clips=4, frames=24, objects=2)
+    bent = window.target.clone()
+    bent[:, 8] += 3  # px, which no law explains
+    net = terrain(objects=2, matched_steps=10, smoothing_s=0.06)
+    assert net.law.contact is not None
+    net.law.contact.reach.data = torch.tensor(10.0).log()  # all is one meeting
+    losses = [net.loss(replace(window, target=each), torch_generator(0))[0].item() for each in (window.target, bent)]
+    assert losses == [0, 0]
+    net.law.contact.reach.data = torch.tensor(0.001).log()
+    losses = [net.loss(replace(window, target=each), torch_generator(0))[0].item() for each in (window.target, bent)]
+    assert 0 < losses[0] < losses[1]
 
 
 def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():
