@@ -32,9 +32,9 @@ SETTINGS = {"float32": ("float32", 1), "bfloat16": ("bfloat16", 1), "bfloat16, 2
 """What to call it, precision and threads: plain first."""
 
 
-def windows(name: str, params: LearnedParams) -> TrackWindows:
+def windows(name: str, predict: PredictParams, params: LearnedParams) -> TrackWindows:
     """What it learns from."""
-    kind, predict = predictor_class(params.kind), read(f"datasets.{name}.predict", PredictParams)
+    kind = predictor_class(params.kind)
     last = predict.last_frame(params.trained_to, f"datasets.{name}.predict")
     table = tracks.load(Path(f"data/tracks/{name}.parquet"))
     clips = ClipSet(Path("data/clips") / name)
@@ -73,6 +73,7 @@ def main(names: list[str]) -> None:
     new: dict[str, Any] = {"machine": machine, "minutes": {}}
     table = kept if kept.get("machine") == machine else new
     table |= {"date": date.today().isoformat()}
+    seed = read("compute", ComputeParams).seed
     for name in names:
         rows = table["minutes"].setdefault(name, {})
         predict = read(f"datasets.{name}.predict", PredictParams)
@@ -81,13 +82,10 @@ def main(names: list[str]) -> None:
             params = read(f"predictors.{predictor}", learned_params(kind)).on(predict)
             if params.trained_to == "interpolation" and predict.interpolation is None:
                 continue
-            found = windows(name, params)
-            rows[predictor] = {
-                what: minutes(params, found, *setting, read("compute", ComputeParams).seed)
-                for what, setting in SETTINGS.items()
-            }
+            found = windows(name, predict, params)
+            rows[predictor] = {what: minutes(params, found, *setting, seed) for what, setting in SETTINGS.items()}
             print(f"| {name} | {predictor} | " + " | ".join(f"{each} min" for each in rows[predictor].values()) + " |")
-    OUT.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")
+        OUT.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":
