@@ -3,8 +3,8 @@
 The environment is encoded once from the seen frames into a map. At every step the map is read at the predicted
 position, a small network gives the law of motion there, and velocity and position follow: v += a, p += v. What the
 paper's conclusion asks for: the environment is remembered however long the forecast, and only the motion is propagated.
-Objects that meet push each other. The camera's own motion is taken off the seen positions, and a forecast says how sure
-it is.
+Objects that meet push each other, and cushions push what runs into them. The camera's own motion is taken off the seen
+positions, and a forecast says how sure it is.
 
 Learned from forecasts alone the law gets stuck where it is right on the whole and nowhere in particular. So it is first
 matched, place by place, to the changes of velocity along smoothed tracks; then whole forecasts are trained, too.
@@ -86,8 +86,7 @@ class Terrain(Predictor):
         parts = {"train_change_px": mismatch.item()}
         self.steps += 1
         if self.steps <= self.params.matched_steps:
-            self.law.see_distances(track)
-            return mismatch, parts
+            return mismatch + unit.px * self.law.see(scene, track), parts
         path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1])
         distance = distance_px(unit.to_px(path), batch.target)
         parts["train_last_px"] = distance[:, -1].mean().item()
@@ -96,7 +95,7 @@ class Terrain(Predictor):
     def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit, frames_per_s: float) -> Tensor:
         """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame.
 
-        Of frames far from any meeting: smoothing smears what happens in one over all frames around.
+        Of frames far from any touch: smoothing smears what happens in one over all frames around.
         """
         place, velocity, turn = smoothed(track, odd(self.params.smoothing_s * frames_per_s))
         found = self.law(scene, Motion.rolling(place, velocity)).velocity - velocity
@@ -145,11 +144,12 @@ class Terrain(Predictor):
         return Scene(ground, whole, self.describe(here).float(), unit.aspect), places
 
     def _begin(self, scene: Scene, places: Tensor, times: Tensor) -> Motion:
-        """The last seen position and velocity: the tracks' own, mended by what is seen."""
+        """The last seen positions and velocities: the tracks' own, mended by what is seen; and what slides already."""
         here = read(scene.map, places[:, -1:], scene.aspect)[:, 0]
+        places, sliding = self.law.turned(scene, places)
         told = [here, scene.whole.unsqueeze(1).expand(-1, self.objects, -1), past(places)]
         place, velocity = mended(self.start(torch.cat(told, dim=2)), places, times)
-        return Motion.rolling(place.unsqueeze(1), velocity.unsqueeze(1))
+        return Motion(place.unsqueeze(1), velocity.unsqueeze(1), sliding.unsqueeze(1))
 
 
 def _ahead(seen: Seen, asked_times: Tensor) -> Tensor:

@@ -45,6 +45,12 @@ def terrain(objects: int = 1, drawn: float = 0.0, **changed: object) -> Terrain:
     return made
 
 
+def flat(objects: int) -> Scene:
+    """Ground that says nothing, on a frame that is wider than high."""
+    ground, whole = torch.zeros(1, 16, 5, 6), torch.zeros(1, 16)
+    return Scene(ground, whole, torch.zeros(1, objects, SMALL.code), torch.tensor([2.0, 1.7]))
+
+
 def test_an_untrained_net_goes_straight_on():
     window = springs(clips=3, frames=8)
     steady = torch.tensor([2.0, -1.0]) * torch.arange(8.0)[:, None, None] + torch.tensor([20.0, 30.0])
@@ -86,11 +92,11 @@ def test_two_balls_on_flat_ground_roll_meet_slide_and_roll_on_as_mechanics_has_i
     law = terrain(objects=2).law
     assert law.contact is not None
     law.contact.spin.data = torch.tensor(20.0)  # spins as before
-    law.contact.grip.data = torch.tensor(0.004).log()
+    law.sliding.grip.data = torch.tensor(0.004).log()
     reach, fast = law.contact.reach.exp().item(), 0.05
-    scene = Scene(torch.zeros(1, 16, 5, 6), torch.zeros(1, 16), torch.zeros(1, 2, SMALL.code), torch.tensor([2.0, 1.7]))
+    scene = flat(objects=2)
     place = torch.tensor([[[[-reach - 1.5 * fast, 0.0], [0.0, 0.0]]]])
-    for each in law.contact.slope.parameters():
+    for each in law.slope.parameters():
         each.data.zero_()
     now, paths = Motion.rolling(place, torch.tensor([[[[fast, 0.0], [0.0, 0.0]]]])), []
     with torch.no_grad():
@@ -112,10 +118,60 @@ def test_what_a_meeting_smears_over_a_smoothed_track_teaches_the_ground_nothing(
     ahead = torch.linspace(-0.5, 0.5, 21).abs() + 0.05
     track = torch.stack([torch.stack([ahead, 0 * ahead], -1), torch.stack([-ahead, 0 * ahead], -1)], dim=1)[None]
     law = terrain(objects=2).law
+    scene = flat(objects=2)
     for _ in range(600):
-        law.see_distances(track)
-    scene = Scene(torch.zeros(1, 16, 5, 6), torch.zeros(1, 16), torch.zeros(1, 2, SMALL.code), torch.tensor([2.0, 1.7]))
+        law.see(scene, track)
     free = law.untouched(scene, track, width=5)[0, :, 0]
+    assert free.tolist() == [float(10 not in range(at, at + 5)) for at in range(17)]
+
+
+def mismatch(net: Terrain, window: Window) -> float:
+    """Pixels a frame squared."""
+    return net.loss(window, torch_generator(0))[1]["train_change_px"]
+
+
+def with_cushions(at: float) -> Terrain:
+    """Halves of the frame's longer side from its middle."""
+    net = terrain()
+    net.law.cushions.share.fill_(1.0)
+    net.law.cushions.reach.data = torch.tensor(at).log()
+    return net
+
+
+def test_a_cushion_turns_what_runs_into_it_and_friction_slows_what_slides_from_there_on():
+    law, fast = with_cushions(at=0.6).law, 0.05
+    law.cushions.spin.data = torch.tensor(20.0)  # spins as before
+    law.sliding.grip.data = torch.tensor(0.004).log()
+    for each in law.slope.parameters():
+        each.data.zero_()
+    now, velocities = Motion.rolling(torch.tensor([[[[0.57, 0.0]]]]), torch.tensor([[[[fast, 0.01]]]])), []
+    with torch.no_grad():
+        for _ in range(30):
+            now = law(flat(objects=1), now)
+            velocities.append(now.velocity[0, 0, 0])
+    after = -0.8 * fast  # Newton's law of impact
+    torch.testing.assert_close(velocities[0], torch.tensor([after + 0.004, 0.01]), rtol=0, atol=2e-4)
+    torch.testing.assert_close(velocities[-1], torch.tensor([after + 1.8 * fast * 2 / 7, 0.01]), rtol=0, atol=2e-4)
+
+
+def test_a_ball_seen_while_a_cushion_turns_it_is_forecast_to_go_on_as_fast_as_it_left():
+    net, half, fast = with_cushions(at=20 / 24), WIDTH / 2, 3.0  # px
+    net.law.cushions.bounce.data = torch.tensor(0.8).logit()
+    net.law.cushions.spin.data = torch.tensor(-20.0)  # nothing slides
+    centre = torch.tensor([(WIDTH - 1) / 2, (HEIGHT - 1) / 2])
+    out = torch.tensor([20 - 0.4 * fast - fast, 20 - 0.4 * fast, 20 - 0.8 * 0.6 * fast, 20 - 0.8 * 1.6 * fast])
+    places = centre + torch.stack([out, torch.zeros(4)], dim=-1)
+    times = torch.arange(8.0)[None]
+    film = torch.full((1, 4, 3, HEIGHT, WIDTH), 0.5)
+    path = net(Seen(film, places[None, :, None], times[:, :4]), times[:, 4:]).mean[0, :, 0]
+    expected = places[-1] - torch.tensor([0.8 * fast, 0.0]) * torch.arange(1.0, 5)[:, None]
+    torch.testing.assert_close(path, expected, rtol=0, atol=0.02 * half)
+
+
+def test_where_a_cushion_turns_it_the_law_is_not_matched_to_the_track():
+    out = (0.05 * (torch.arange(21) - 10.0)).abs()
+    track = torch.stack([0.6 - out, 0 * out], dim=-1)[None, :, None]
+    free = with_cushions(at=0.6).law.untouched(flat(objects=1), track, width=5)[0, :, 0]
     assert free.tolist() == [float(10 not in range(at, at + 5)) for at in range(17)]
 
 
@@ -126,18 +182,19 @@ def test_where_objects_meet_the_law_is_not_matched_to_the_tracks():
     net = terrain(objects=2, matched_steps=10, smoothing_s=0.06)
     assert net.law.contact is not None
     net.law.contact.reach.data = torch.tensor(10.0).log()  # all is one meeting
-    losses = [net.loss(replace(window, target=each), torch_generator(0))[0].item() for each in (window.target, bent)]
-    assert losses == [0, 0]
+    changes = [mismatch(net, replace(window, target=each)) for each in (window.target, bent)]
+    assert changes == [0, 0]
     net.law.contact.reach.data = torch.tensor(0.001).log()
-    losses = [net.loss(replace(window, target=each), torch_generator(0))[0].item() for each in (window.target, bent)]
-    assert 0 < losses[0] < losses[1]
+    changes = [mismatch(net, replace(window, target=each)) for each in (window.target, bent)]
+    assert 0 < changes[0] < changes[1]
 
 
 def test_the_law_is_matched_to_the_tracks_before_forecasts_are_trained():
     window = springs(clips=4, frames=24)
     net = terrain(matched_steps=300, smoothing_s=0.09)
-    losses = losses_by_learning(net, lambda step: window, 300, rate=3e-3)
-    assert losses[-1] < losses[0] / 10  # px a frame squared
+    before = mismatch(terrain(matched_steps=300, smoothing_s=0.09), window)
+    losses_by_learning(net, lambda step: window, 300, rate=3e-3)
+    assert mismatch(net, window) < before / 10
     off = (net.train()(window.seen, window.asked_times).mean - window.target).norm(dim=-1)
     assert off[:, -1].mean() < 1.5  # px after 20 frames; straight on it is 15
     _, parts = net.loss(window, torch_generator(0))
