@@ -86,7 +86,7 @@ class Terrain(Predictor):
         parts = {"train_change_px": mismatch.item()}
         self.steps += 1
         if self.steps <= self.params.matched_steps:
-            return mismatch + unit.px * self.law.see(scene, track), parts
+            return mismatch + self.law.see(scene, track), parts
         path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1])
         distance = distance_px(unit.to_px(path), batch.target)
         parts["train_last_px"] = distance[:, -1].mean().item()
