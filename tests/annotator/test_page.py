@@ -9,7 +9,7 @@ from threading import Thread
 import numpy as np
 import pandas as pd
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Route, expect, sync_playwright
 from rink import ANNOTATIONS, CLIPS, T, path, running
 
 from physpipe.annotator import serving
@@ -313,6 +313,22 @@ def test_reference_positions_are_shown_corrected_and_need_no_box(desk, context, 
     kept = truth().loc[("a", 0)]["status"].tolist()
     assert [kept[0], kept[9]] == ["corrected", "lost"]  # frame 9 was not decoded
     assert set(kept[1:9] + kept[10:]) == {"reference"}
+
+
+def test_keys_that_come_before_the_reference_positions_make_none_up(desk, context, annotate_files) -> None:
+    rows = [f"a.mp4,0,{5 + t},{40.5 + t},70.5" for t in range(T)]
+    annotate_files(reference="\n".join(["source,object,frame,x,y", *rows]) + "\n")
+    on_their_way: list[Route] = []
+    context.route("**/answer", lambda route: on_their_way.append(route))
+    with running(desk) as server:
+        page = opened(context, server.url)
+        press(page, "d", "ArrowRight")
+        expect(page.locator("#hint")).to_contain_text("on their way")
+        on_their_way[0].continue_()
+        expect(page.locator("#where")).to_contain_text("the reference position")
+        press(page, "d", "ArrowRight")
+        saved(page)
+    assert corrections().index.tolist() == [("a", 0, 2)]
 
 
 def test_keys_are_explained_and_everything_has_a_name(desk, context) -> None:

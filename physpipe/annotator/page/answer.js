@@ -16,6 +16,7 @@ export async function askForAnswer(session) {
     return draw();
   }
   if (!session.clip.referenced) hint("The tracker follows the boxes …");
+  session.coming = session.clip.referenced; // at once: nobody need guess where the object is
   try {
     const found = await ask(clipPath(session.clip.name, "answer"), "POST", { boxes, corrections: [] }, TRACKER_MS);
     if (session.answered !== wanted) return; // the boxes changed meanwhile
@@ -25,5 +26,6 @@ export async function askForAnswer(session) {
     session.answered = null;
     hint(`No answer of the tracker: ${error.message}`);
   }
+  session.coming = false;
   draw();
 }

@@ -18,6 +18,7 @@ export const lose = () => correct(LOST);
 export function nudge(dx, dy, held) {
   if (page.boxing) return moveBox(dx, dy);
   const now = shownHere();
+  if (now.x === undefined && page.session.coming) return hint("The positions of this clip are on their way.");
   const point = now.x === undefined ? page.session.nearest(page.object, page.frame) : { x: now.x + dx, y: now.y + dy };
   correct(key(point, now.how !== "occluded"), held && now.how === "key");
 }

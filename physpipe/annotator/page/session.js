@@ -18,6 +18,7 @@ export class Session {
     this.future = [];
     this.answer = new Map(); // object -> {x, y, score}, each an array over frames; null where lost
     this.answered = null; // the boxes that `answer` belongs to
+    this.coming = false; // whether `answer` is empty only until the server has said it
     this.pictures = new Map(); // frame -> ImageBitmap, or its promise
     this.offered = offered;
     this.busy = false;
