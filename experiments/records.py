@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning", "physpipe/finetuning"]
 """Code that only forecasts depend on: trackers need not be measured again when it changes."""
-ALL = ("physpipe", "stages", "data", "dvc.yaml", "params.yaml")
+FILM = "data"
+ALL = ("physpipe", "stages", FILM, "dvc.yaml", "params.yaml")
 CODE = {"trackers": (*ALL, *(f":(exclude){folder}" for folder in AFTER_TRACKS)), "predictors": ALL}
 """What is measured to the code and the params that it depends on, as Git's path arguments."""
 ONE_THREAD = "compute.threads=1"
@@ -47,7 +48,7 @@ class Result(NamedTuple):
     figures: dict[str, dict[str, dict[str, Any]]]
     """The file of `metrics/`: data set to tracker to figures, or to what was learned from to predictor to them."""
     commit: str
-    """Of the code, shortened."""
+    """The last one that changed the code or the params, shortened; not one that only brought film in."""
     finished: str
     """ISO date and time."""
     machine: str | None
@@ -110,7 +111,9 @@ def read_results(wanted: Sequence[Experiment], run: Runner = command) -> dict[Ex
 
 def _read(experiment: Experiment, revision: str, run: Runner) -> Result:
     figures = json.loads(run("git", "show", f"{revision}:metrics/{experiment.measured}.json"))
-    commit, date = run("git", "show", "--no-patch", "--format=%p %cI", revision).split()[-2:]
+    date = run("git", "show", "--no-patch", "--format=%cI", revision).split()[-1]
+    code = (path for path in CODE[experiment.measured] if path != FILM)
+    commit = run("git", "log", "-1", "--format=%h", f"{revision}^", "--", *code).strip()
     note = COSTS / f"{experiment.name}.json"
     cost = json.loads(note.read_text()) if note.is_file() else {"machine": None, "time_s": None}
     return Result(figures, commit, date, **cost)

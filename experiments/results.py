@@ -99,7 +99,7 @@ def main() -> None:
     together = ordered(_known(FOLDER / "finetuned.json") | tuning_runs.collect(tuned, results, seeds[0]), names)
     for name, table in (("trackers", trackers), ("predictors", predictors), ("finetuned", together)):
         _save(name, table)
-    unrun = absent | {name: "not run yet" for name in names if name not in trackers}
+    unrun = {name: absent.get(name, "not run yet") for name in datasets if name not in trackers}
     pages = [tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid), findings.page(predictors)]
     PAGE.write_text("\n".join([*pages, tuning_runs.page(together, list(grid))]))
     for experiment, reason in failed.items():

@@ -22,6 +22,7 @@ class Pretended:
             ("git", "status"): lambda: self.changed,
             ("git", "for-each-ref"): self._refs,
             ("git", "diff"): lambda: "physpipe/core/ball.py" if words[3] == OLD else "",
+            ("git", "log"): lambda: "" if "data" in words else f"{BASE[:7]}\n",
             ("git", "show"): lambda: self._show(words[-1]),
             ("dvc", "exp"): lambda: self._queue(words),
             ("dvc", "queue"): lambda: self._manage(words[2:]),
@@ -33,7 +34,7 @@ class Pretended:
         return "\n".join([*lines, f"{'2' * 40} refs/exps/celery/stash"])
 
     def _show(self, what):
-        return json.dumps(TRACKERS) if ":" in what else f"{BASE[:7]} 2026-01-02T03:04:05+00:00\n"
+        return json.dumps(TRACKERS) if ":" in what else "2026-01-02T03:04:05+00:00\n"
 
     def _queue(self, words):
         self.tasks.append([f"{len(self.tasks):07x}", words[words.index("--name") + 1], "Queued"])
