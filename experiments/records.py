@@ -10,6 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
+import torch
+
 AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning", "physpipe/finetuning"]
 """Code that only forecasts depend on: trackers need not be measured again when it changes."""
 FILM = "data"
@@ -138,5 +140,6 @@ def note_cost(name: str, time_s: float | None) -> None:
 
 
 def machine() -> str:
-    """What this runs on: system, processor architecture, Python."""
-    return f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
+    """What this runs on: system, processor and its vector instructions, Python."""
+    vectors = torch.backends.cpu.get_cpu_capability()
+    return f"{platform.system()} {platform.machine()} {vectors}, Python {platform.python_version()}"

@@ -6,8 +6,9 @@ import pandas as pd
 import torch
 from pydantic import Field
 
-from physpipe.core.determinism import device, torch_generator
+from physpipe.core.determinism import torch_generator
 from physpipe.core.params import Section
+from physpipe.core.precision import brief
 from physpipe.flow_learning.film import PairParams, as_batch, draw_pairs
 from physpipe.flow_learning.verdict import VerdictParams
 from physpipe.flownet.network import CorrFlow, CorrFlowParams, endpoint_errors
@@ -39,7 +40,7 @@ def learn_flow(params: FlowParams, seed: int, checkpoint: Path) -> tuple[CorrFlo
 
     def validate() -> Rank:
         """Error inside the objects and outside them, pixels, weighed alike."""
-        with torch.autocast(device().type, torch.bfloat16):
+        with brief():
             errors = [endpoint_errors(net(batch.first, batch.second), batch).sum() for batch in batches]
         return (torch.stack(errors).mean().item(),)
 

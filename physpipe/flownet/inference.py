@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physpipe.core.determinism import device
 from physpipe.core.images import as_images
+from physpipe.core.precision import brief
 from physpipe.flownet.network import CorrFlow
 
 
@@ -19,6 +20,6 @@ def flows(
     net = net.to(device(), memory_format=torch.channels_last).eval()  # type: ignore[call-overload]
     for start in range(0, len(first), batch_pairs):
         pictures = [as_images(np.array(each[start : start + batch_pairs])) for each in (first, second)]
-        with torch.autocast(device().type, torch.bfloat16):
+        with brief():
             found = net(*pictures)
         yield from found.float().movedim(1, -1).contiguous().cpu().numpy()

@@ -63,10 +63,13 @@ def _libraries() -> Iterator[Finding]:
 def _torch() -> Iterator[Finding]:
     try:
         import torch  # here, since a check-up must survive an installation that is broken
+
+        from physpipe.core.precision import has_bfloat16
     except Exception as error:
         yield Finding("problem", f"PyTorch cannot be imported ({error})", INSTALL)
         return
-    yield Finding("ok", f"torch {torch.__version__}")
+    numbers = "bfloat16" if has_bfloat16() else "float32: no bfloat16 here, so figures differ in their last digits"
+    yield Finding("ok", f"torch {torch.__version__}; most networks compute in {numbers}")
     if torch.cuda.is_available():
         card = torch.cuda.get_device_properties(0)
         yield Finding("ok", f"GPU: {card.name}, {card.total_memory / 1e9:.0f} GB; training uses it")

@@ -14,6 +14,7 @@ from torch import nn
 from physpipe.core.determinism import device, torch_generator
 from physpipe.core.errors import InputError
 from physpipe.core.params import Section
+from physpipe.core.precision import brief
 from physpipe.core.progress import progress
 from physpipe.io import checkpoints
 
@@ -49,7 +50,7 @@ class FitParams(Section):
     patience: int = Field(ge=1)
     """Validations without a gain before stopping."""
     precision: Literal["float32", "bfloat16"]
-    """Type of the autocast forward pass."""
+    """Type of the autocast forward pass; float32 also where the machine has no bfloat16."""
 
 
 class _Run:
@@ -131,8 +132,7 @@ def _update(run: _Run, sample: Sampler, generator: torch.Generator) -> dict[str,
     for group in run.optimiser.param_groups:
         group["lr"] = _rate(run.step, run.params)
     run.optimiser.zero_grad(set_to_none=True)
-    where = device()
-    with torch.autocast(where.type, torch.bfloat16, enabled=run.params.precision == "bfloat16"):
+    with brief(run.params.precision == "bfloat16"):
         loss, parts = run.model.loss(sample(generator), generator)
     loss.backward()
     norm = nn.utils.clip_grad_norm_(run.model.parameters(), run.params.clip_norm)

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import torch
 from numpy.typing import NDArray
 
-from physpipe.core.determinism import device, torch_generator
+from physpipe.core.determinism import torch_generator
+from physpipe.core.precision import brief
 from physpipe.io.clips import ClipSet
 from physpipe.learning.training import FitParams, Rank, fit
 from physpipe.tracker_learning.moments import MomentSampler
@@ -30,7 +30,7 @@ class Lesson:
 
     def read(self, net: TrackNet) -> Signals:
         """Signals on the held-out batches; the same noise for every network and time."""
-        with torch.autocast(device().type, torch.bfloat16):
+        with brief():
             return read_signals(net.eval(), self.held_out, self.signals, torch_generator(0))
 
     def rank(self, net: TrackNet) -> Rank:

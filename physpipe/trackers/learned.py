@@ -10,6 +10,7 @@ from torch import Tensor
 
 from physpipe.core.determinism import device
 from physpipe.core.params import Section
+from physpipe.core.precision import brief
 from physpipe.trackers.base import Trajectory
 from physpipe.tracknet.detector import Detector
 from physpipe.tracknet.heatmap import cell_centres, distribution, expected_position
@@ -52,7 +53,7 @@ class LearnedTracker:
             hidden = (
                 None if ignore is None else torch.from_numpy(cells(ignore[part], self.detector.stride)).to(device())
             )
-            with torch.autocast(device().type, torch.bfloat16):
+            with brief():
                 logits = self.detector(images.float() / 255)
             yield distribution(masked(logits, hidden))
 
