@@ -20,6 +20,7 @@ from speed import processor
 from physpipe.core.determinism import ComputeParams, device, prepare
 from physpipe.core.horizon import PredictParams
 from physpipe.core.params import read, read_value
+from physpipe.core.precision import has_bfloat16
 from physpipe.io import tracks
 from physpipe.io.clips import ClipSet
 from physpipe.learning.training import fit
@@ -28,8 +29,8 @@ from physpipe.predictor_learning.windows import TrackWindows
 
 OUT = Path(__file__).with_name("training.json")
 WARM, STEPS = 4, 40
-SETTINGS = {"float32": ("float32", 1), "bfloat16": ("bfloat16", 1), "bfloat16, 2 threads": ("bfloat16", 2)}
-"""What to call it, precision and threads: plain first."""
+PRECISIONS = ("float32", "bfloat16") if has_bfloat16() else ("float32",)
+THREADS = {"": 1, ", 2 threads": 2}
 
 
 def windows(name: str, predict: PredictParams, params: LearnedParams) -> TrackWindows:
@@ -83,7 +84,11 @@ def main(names: list[str]) -> None:
             if params.trained_to == "interpolation" and predict.interpolation is None:
                 continue
             found = windows(name, predict, params)
-            rows[predictor] = {what: minutes(params, found, *setting, seed) for what, setting in SETTINGS.items()}
+            rows[predictor] = {
+                f"{precision}{also}": minutes(params, found, precision, threads, seed)
+                for precision in PRECISIONS
+                for also, threads in THREADS.items()
+            }
             print(f"| {name} | {predictor} | " + " | ".join(f"{each} min" for each in rows[predictor].values()) + " |")
         OUT.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")
 
