@@ -14,8 +14,8 @@ import torch
 
 AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning", "physpipe/finetuning"]
 """Code that only forecasts depend on: trackers need not be measured again when it changes."""
-FILM = "data"
-ALL = ("physpipe", "stages", FILM, "dvc.yaml", "params.yaml")
+DATA = "data"
+ALL = ("physpipe", "stages", DATA, "dvc.yaml", "params.yaml")
 CODE = {"trackers": (*ALL, *(f":(exclude){folder}" for folder in AFTER_TRACKS)), "predictors": ALL}
 """What is measured to the code and the params that it depends on, as Git's path arguments."""
 ONE_THREAD = "compute.threads=1"
@@ -114,7 +114,7 @@ def read_results(wanted: Sequence[Experiment], run: Runner = command) -> dict[Ex
 def _read(experiment: Experiment, revision: str, run: Runner) -> Result:
     figures = json.loads(run("git", "show", f"{revision}:metrics/{experiment.measured}.json"))
     date = run("git", "show", "--no-patch", "--format=%cI", revision).split()[-1]
-    code = (path for path in CODE[experiment.measured] if path != FILM)
+    code = (path for path in CODE[experiment.measured] if path != DATA)
     commit = run("git", "log", "-1", "--format=%h", f"{revision}^", "--", *code).strip()
     note = COSTS / f"{experiment.name}.json"
     cost = json.loads(note.read_text()) if note.is_file() else {"machine": None, "time_s": None}

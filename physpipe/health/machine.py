@@ -68,7 +68,7 @@ def _torch() -> Iterator[Finding]:
     except Exception as error:
         yield Finding("problem", f"PyTorch cannot be imported ({error})", INSTALL)
         return
-    numbers = "bfloat16" if has_bfloat16() else "float32: no bfloat16 here, so figures differ in their last digits"
+    numbers = "bfloat16" if has_bfloat16() else "float32: no bfloat16 here, so figures differ from those made with it"
     yield Finding("ok", f"torch {torch.__version__}; most networks compute in {numbers}")
     if torch.cuda.is_available():
         card = torch.cuda.get_device_properties(0)
