@@ -18,7 +18,7 @@ POLL_S = 10.0
 PREDICTORS = "data/predictors"
 """Folder that the report depends on, which nothing makes in an experiment that learns no predictor."""
 PATIENCE = 6
-"""Polls without a worker after which DVC's queue counts as broken."""
+"""Polls without a worker, or answers of DVC that failed, after which its queue counts as broken."""
 
 
 class Task(NamedTuple):
@@ -44,7 +44,7 @@ def run_missing(
     if not missing:
         return {}
     Path(PREDICTORS).mkdir(parents=True, exist_ok=True)
-    old = _clear({each.name for each in missing}, run)
+    old = _clear({each.name for each in missing}, run, wait)
     for number, each in enumerate(missing, 1):
         _say(f"queueing {number} of {len(missing)}: {each.label}")
         run(
@@ -67,9 +67,9 @@ def run_missing(
     return {each: _reason(ended.get(each.name), run) for each in missing if each.name not in done}
 
 
-def _clear(names: set[str], run: Runner) -> set[str]:
+def _clear(names: set[str], run: Runner, wait: Callable[[float], None]) -> set[str]:
     """Takes what an earlier sitting left of these experiments off the queue; ids of all tasks that remain."""
-    tasks, workers = _status(run)
+    tasks, workers = _status(run, wait)
     mine = [task for task in tasks if task.name in names]
     running = [task.name for task in mine if task.state == "Running"]
     if running and workers:
@@ -88,7 +88,7 @@ def _watch(
     ended: dict[str, Task] = {}
     idle = 0
     while True:
-        tasks, workers = _status(run)
+        tasks, workers = _status(run, wait)
         mine = [task for task in tasks if task.name in labels and task.id not in old]
         for task in mine:
             if task.state == "Running" and task.name not in started:
@@ -109,9 +109,9 @@ def _watch(
         wait(POLL_S)
 
 
-def _status(run: Runner) -> tuple[list[Task], int]:
+def _status(run: Runner, wait: Callable[[float], None]) -> tuple[list[Task], int]:
     """Tasks of the queue, and how many workers are alive."""
-    printed = run("dvc", "queue", "status")
+    printed = _printed(run, wait)
     tasks = []
     for line in printed.splitlines():
         words = line.split()
@@ -119,6 +119,16 @@ def _status(run: Runner) -> tuple[list[Task], int]:
             tasks.append(Task(words[0], words[1], words[-1]))
     workers = re.search(r"(\d+) active, (\d+) idle", printed)
     return tasks, int(workers[1]) + int(workers[2]) if workers else 0
+
+
+def _printed(run: Runner, wait: Callable[[float], None]) -> str:
+    """What `dvc queue status` says; it fails now and then, where a worker is just writing what it reads."""
+    for _ in range(PATIENCE):
+        try:
+            return run("dvc", "queue", "status")
+        except CommandError:
+            wait(POLL_S)
+    return run("dvc", "queue", "status")
 
 
 def _reason(task: Task | None, run: Runner) -> str:

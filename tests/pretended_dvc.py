@@ -2,18 +2,24 @@
 
 import json
 
+from experiments.records import CommandError
+
 BASE, OLD = "a" * 40, "b" * 40
 """The commit of today's code, and one of other code."""
 TRACKERS = {"bowls": {"unsupervised": {"mean_px": 0.5}}}
 
 
 class Pretended:
-    """Answers as git and dvc would; a task runs for one poll, then succeeds unless its label is in `broken`."""
+    """Answers as git and dvc would; a task runs for one poll, then succeeds unless its label is in `broken`.
 
-    def __init__(self, finished=(), broken=(), changed="", tasks=(), workers=0, starts=True):
+    After each answer the queue's status fails `garbled` times.
+    """
+
+    def __init__(self, finished=(), broken=(), changed="", tasks=(), workers=0, starts=True, garbled=0):
         self.refs = [(name, base) for name, base in finished]
         self.broken, self.changed, self.starts = broken, changed, starts
         self.tasks, self.workers = list(tasks), workers
+        self.garbled, self.failures = garbled, 0
         self.said: list[tuple[str, ...]] = []
 
     def __call__(self, *words: str) -> str:
@@ -48,6 +54,10 @@ class Pretended:
         if words[0] == "logs":
             return "step 1\nerror: params.yaml: bad. To mend: mend it.\nERROR: failed to reproduce\n\n"
         if words[0] == "status":
+            if self.failures < self.garbled:
+                self.failures += 1
+                raise CommandError("`dvc queue status` failed: ERROR: unexpected error - Expecting value")
+            self.failures = 0
             rows = "\n".join(f"{task}  {name}  04:03 AM   {state}" for task, name, state in self.tasks)
             self._advance()
             return f"Task  Name  Created  Status\n{rows}\n\nWorker status: {self.workers} active, 0 idle\n"

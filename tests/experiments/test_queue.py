@@ -67,6 +67,13 @@ def test_a_queue_whose_workers_do_not_start_is_given_up():
         run(Pretended(starts=False), ONE)
 
 
+def test_a_status_that_cannot_be_read_for_a_moment_is_asked_again():
+    pretended = Pretended(garbled=2)
+    assert run(pretended, ONE) == {}
+    with pytest.raises(CommandError, match="queue status"):
+        run(Pretended(garbled=1000), ONE)
+
+
 def test_an_interrupt_ends_the_workers_too():
     def interrupt(_):
         raise KeyboardInterrupt
