@@ -126,12 +126,21 @@ def line(cells: list[str]) -> str:
 
 
 def _cell(key: str, row: Row) -> str:
-    """The mean, with the worst seed where it differs, and the interval over clips of the mean error."""
+    """The mean, with the worst seed where it differs, and the interval over clips of the mean error; of a verdict, how
+    many seeds have it where they differ.
+    """
+    if key == "locked":
+        return _how_many([each.get(key) for each in row.get("per_seed", {}).values()]) or number(row.get(key))
     value, worst = row.get(key), row.get("worst", {}).get(key)
     text = number(value)
     if key == "mean_px" and row.get("mean_px_low") is not None:
         text += f" [{number(row['mean_px_low'])}–{number(row['mean_px_high'])}]"
     return text if worst is None or number(worst) == number(value) else f"{text} ({number(worst)})"
+
+
+def _how_many(verdicts: list[bool | None]) -> str | None:
+    """`2 of 3`; None where all are alike."""
+    return f"{verdicts.count(True)} of {len(verdicts)}" if len(set(verdicts)) > 1 else None
 
 
 def number(value: Any) -> str:

@@ -92,6 +92,13 @@ def test_the_page_has_a_line_a_tracker_and_says_what_did_not_run():
     assert "one thread of a machine; ours on its 2 cores: 1,234 (`bowls`)." in text
 
 
+def test_where_some_seeds_lock_the_page_says_how_many():
+    doubtful = result(1.5, 1.0)
+    doubtful.figures["bowls"]["unsupervised"]["locked"] = False
+    lines = page(table(result(0.5, 1.0), doubtful), {}, SPEED).splitlines()
+    assert "| `unsupervised_sequential` | 1.00 (1.50) | 4.10 | 2.00 (3.00) | – | 1 of 2 |" in lines
+
+
 def test_the_verdict_is_between_ours_and_tools_that_learn_nothing():
     won = verdict(table(result(0.5, 1.0))["bowls"])
     assert won.startswith("In mean ours is as good or better: 1.00 px of `lab` (it lost 25% of")
