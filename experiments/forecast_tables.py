@@ -71,9 +71,9 @@ def _section(name: str, blocks: Table, wanted: Mapping[str, Collection[str]]) ->
 def _told(rows: list[Row]) -> str:
     seeds = sorted({seed for row in rows for seed in row["seeds"]})
     commits = sorted({row["commit"] for row in rows})
-    machines = sorted({row["machine"] for row in rows})
+    machines = " and ".join(sorted({row["machine"] for row in rows}))
     finished = max(row["finished"] for row in rows)
-    return f"Seeds {', '.join(map(str, seeds))}; commit {', '.join(commits)}; {', '.join(machines)}; {finished[:10]}."
+    return f"Seeds {', '.join(map(str, seeds))}; commit {', '.join(commits)}; {machines}; {finished[:10]}."
 
 
 def _table(rows: list[tuple[str, str, Row]], columns: Columns) -> str:

@@ -127,7 +127,7 @@ def about(found: Mapping[int, Result]) -> dict[str, Any]:
     return {
         "commit": ", ".join(sorted({each.commit for each in found.values()})),
         "seeds": sorted(found),
-        "machine": ", ".join(sorted({each.machine or "elsewhere" for each in found.values()})),
+        "machine": " and ".join(sorted({each.machine or "elsewhere" for each in found.values()})),
         "finished": max(each.finished for each in found.values()),
         "time_s": None if None in times else max(time for time in times if time is not None),
     }

@@ -77,7 +77,7 @@ def test_rows_hold_mean_worst_seeds_commit_machine_and_time():
     assert row["frames_per_s"] is None
     assert found["bowls"]["lab"]["frames_per_s"] == 321
     elsewhere = table(result(0.5, 1.0), result(0.5, 1.0, machine=None, time_s=None))["bowls"]["lab"]
-    assert (elsewhere["machine"], elsewhere["time_s"]) == ("elsewhere, here", None)
+    assert (elsewhere["machine"], elsewhere["time_s"]) == ("elsewhere and here", None)
 
 
 def test_the_page_has_a_line_a_tracker_and_says_what_did_not_run():
