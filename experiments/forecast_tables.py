@@ -2,6 +2,8 @@
 
 from collections.abc import Collection, Mapping
 
+from scipy.stats import binom
+
 from experiments.spread import Row
 from experiments.tables import Columns, columns_with_figures, line, number
 from experiments.tracker_runs import Table
@@ -73,7 +75,14 @@ def _told(rows: list[Row]) -> str:
     commits = sorted({row["commit"] for row in rows})
     machines = " and ".join(sorted({row["machine"] for row in rows}))
     finished = max(row["finished"] for row in rows)
-    return f"Seeds {', '.join(map(str, seeds))}; commit {', '.join(commits)}; {machines}; {finished[:10]}."
+    told = f"Seeds {', '.join(map(str, seeds))}; commit {', '.join(commits)}; {machines}; {finished[:10]}."
+    return f"{told} {_luck(min(row['clips'] for row in rows))}"
+
+
+def _luck(clips: int) -> str:
+    """What coverage of 90 % may look like in so few clips; those of two objects in a clip are hardly independent."""
+    low, high = binom.interval(0.95, clips, 0.9)
+    return f"Of {clips} clips, ellipses that do hold 90 % hold {low / clips:.2f} to {high / clips:.2f} 19 times in 20."
 
 
 def _table(rows: list[tuple[str, str, Row]], columns: Columns) -> str:

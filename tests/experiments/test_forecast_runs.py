@@ -12,10 +12,14 @@ ROOT = Path(__file__).parents[2]
 DATASETS = yaml.safe_load((ROOT / "params.yaml").read_text())["datasets"]
 PAPER = yaml.safe_load((ROOT / "physpipe/report/paper.yaml").read_text())
 GRID = grid(PAPER, list(DATASETS))
+TOLD = {"seeds": [0], "commit": "a", "machine": "m", "finished": "2026-01-02T03", "clips": 33}
 
 
 def result(error_px: float) -> Result:
-    rows = {"dispnet": {"error_T_px": error_px, "paper_error_T_px": 3.9}, "persistence": {"error_T_px": 33.0}}
+    rows = {
+        "dispnet": {"error_T_px": error_px, "paper_error_T_px": 3.9, "clips": 33},
+        "persistence": {"error_T_px": 33.0, "clips": 33},
+    }
     figures = {"bowls": {"calibration": {}, "tracks": rows, "truth": rows}}
     return Result(figures, "abc1234", "2026-01-02T03:04:05+00:00", "here", 60.0)
 
@@ -58,6 +62,12 @@ def test_the_page_has_the_papers_figures_beside_ours_and_names_what_has_not_run(
 
 
 def test_interpolation_has_a_table_of_its_own():
-    row = {"error_10_px": 1.5, "paper_error_10_px": 3.8, "error_T_px": 1.0, "seeds": [0], "commit": "a", "machine": "m"}
-    text = page({"bowls": {"tracks": {"interpnet": {**row, "finished": "2026-01-02T03"}}}}, {})
+    row = {"error_10_px": 1.5, "paper_error_10_px": 3.8, "error_T_px": 1.0, **TOLD}
+    text = page({"bowls": {"tracks": {"interpnet": row}}}, {})
     assert "| `interpnet` | unsupervised tracks | 1.50 | 3.80 |" in text.splitlines()
+
+
+def test_the_page_says_what_coverage_so_few_clips_can_tell_apart():
+    """Of 33 clips 26 to 33 lie within ellipses that hold 90 %, by the binomial law: 19 times in 20."""
+    text = page({"bowls": {"tracks": {"terrain": {"error_T_px": 1.0, **TOLD}}}}, {})
+    assert "Of 33 clips, ellipses that do hold 90 % hold 0.79 to 1.00 19 times in 20." in text
