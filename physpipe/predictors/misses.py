@@ -1,6 +1,6 @@
 """How far forecasts miss, as a power of how far ahead they are: fitted to film that nothing was learned from (ours).
 
-What a predictor that gives no covariance is as sure as; and what the covariance of `terrain` is corrected by.
+What a predictor that gives no covariance is as sure as; and a part of the covariance of `terrain`.
 """
 
 import torch

@@ -22,7 +22,7 @@ from physpipe.predictors.steadying import steadied
 from physpipe.predictors.symmetry import mean_over_symmetries
 from physpipe.predictors.terrain_law import Law, Motion, Scene, read
 from physpipe.predictors.terrain_map import TerrainMap
-from physpipe.predictors.uncertainty import Path, Spread, linearised
+from physpipe.predictors.uncertainty import Spread, around, carried
 
 
 class TerrainParams(Section):
@@ -41,7 +41,7 @@ class TerrainParams(Section):
     smoothing_s: float = Field(gt=0)
     """Seconds that a track is smoothed over for it, by a cubic: 5 frames or more, fewer where fewer are asked for."""
     spread_rounds: int = Field(ge=0)
-    """Steps of fitting the covariance; 0 = forecasts have none."""
+    """Steps of fitting the covariance, at most; 0 = forecasts have none."""
     symmetric: bool
     """Whether a forecast is the mean over all mirrors and turns of the frame; training sees one at a time."""
 
@@ -66,7 +66,7 @@ class Terrain(Predictor):
         self.describe = nn.Linear(C, code)
         self.start = zero_reader(2 * C + 4 * self.seen_frames, hidden, 2 * (self.seen_frames + 1), nn.SiLU)
         self.law = Law(C, C, code, hidden, pairs=objects > 1)
-        self.spread = Spread(objects)
+        self.spread = Spread()
         self.register_buffer("steps", torch.tensor(0))
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
@@ -74,7 +74,7 @@ class Terrain(Predictor):
         mean = self._shown(seen, asked_times)
         if self.training or not self.params.spread_rounds:
             return Forecast(mean)
-        cov = self.spread(self._path(seen, asked_times).jacobians) * FrameUnit.of(seen.frames).px ** 2
+        cov = self.spread(self._carried(seen, asked_times)) * FrameUnit.of(seen.frames).px ** 2
         return Forecast(mean, at(cov, _ahead(seen, asked_times)))
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
@@ -87,7 +87,7 @@ class Terrain(Predictor):
         self.steps += 1
         if self.steps <= self.params.matched_steps:
             return mismatch + self.law.see(scene, track), parts
-        path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1])
+        path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1]).squeeze(2)
         distance = distance_px(unit.to_px(path), batch.target)
         parts["train_last_px"] = distance[:, -1].mean().item()
         return distance.mean() + self.params.matched_weight_s2 * batch.frames_per_s**2 * mismatch, parts
@@ -107,7 +107,7 @@ class Terrain(Predictor):
         if self.params.spread_rounds:
             seen, times = steadied(held_out.seen), held_out.asked_times
             missed = (held_out.target - self._shown(seen, times)) / FrameUnit.of(seen.frames).px
-            self.spread.fit(self._path(seen, times).jacobians, missed, self.params.spread_rounds)
+            self.spread.fit(self._carried(seen, times), missed, self.params.spread_rounds)
 
     def _shown(self, seen: Seen, asked_times: Tensor) -> Tensor:
         """(B, N, K, 2) px, what a forecast shows of steady positions."""
@@ -118,22 +118,22 @@ class Terrain(Predictor):
     def _forecast(self, seen: Seen, asked_times: Tensor) -> Forecast:
         scene, places = self._look(seen)
         ahead = _ahead(seen, asked_times)
-        path = self._roll(scene, self._begin(scene, places, seen.times), int(ahead.max()))
+        path = self._roll(scene, self._begin(scene, places, seen.times), int(ahead.max())).squeeze(2)
         return Forecast(FrameUnit.of(seen.frames).to_px(at(path, ahead)))
 
     def _roll(self, scene: Scene, now: Motion, steps: int) -> Tensor:
-        """(B, steps, K, 2) where the objects are, one frame after the other."""
+        """(B, steps, M, K, 2) where the objects are, one frame after the other."""
         path = []
         for _ in range(steps):
             now = self.law(scene, now)
-            path.append(now.place[:, 0])
+            path.append(now.place)
         return torch.stack(path, dim=1)
 
-    def _path(self, seen: Seen, asked_times: Tensor) -> Path:
-        """To the last asked time, frame by frame."""
+    def _carried(self, seen: Seen, asked_times: Tensor) -> Tensor:
+        """What errors of the start change, frame by frame to the last asked time."""
         scene, places = self._look(seen)
-        now = self._begin(scene, places, seen.times)
-        return linearised(lambda motion: self.law(scene, motion), now, int(_ahead(seen, asked_times).max()))
+        starts = around(self._begin(scene, places, seen.times))
+        return carried(self._roll(scene, starts, int(_ahead(seen, asked_times).max())))
 
     def _look(self, seen: Seen) -> tuple[Scene, Tensor]:
         """The scene, and the places (B, T0, K, 2) of what is seen steadily."""
