@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from experiments.forecast_tables import LEARNED_FROM
+from experiments.markdown import line, number
 from experiments.spread import Row
-from experiments.tables import line, number
 from experiments.tracker_runs import Table
 
 NETS = ("posnet", "dispnet", "probnet")

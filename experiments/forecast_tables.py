@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping
 
 from scipy.stats import binom
 
+from experiments.markdown import Columns, columns_with_figures, line, number
 from experiments.spread import Row
-from experiments.tables import Columns, columns_with_figures, line, number
 from experiments.tracker_runs import Table
 
 LEARNED_FROM = {"tracks": "unsupervised tracks", "truth": "true positions"}

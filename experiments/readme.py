@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from experiments.forecast_tables import LEARNED_FROM
+from experiments.markdown import Columns, columns_with_figures, line, number
 from experiments.spread import Row
-from experiments.tables import NO_TOOLS, OURS, Columns, columns_with_figures, line, number
+from experiments.tables import NO_TOOLS, OURS
 
 README, METRICS = Path("README.md"), Path("metrics")
 BEGIN, END = "<!-- results: written by `make repro` -->\n", "<!-- end of results -->\n"

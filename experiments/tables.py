@@ -1,12 +1,11 @@
 """The tables of docs/results.md, written from the JSON beside them."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
+from experiments.markdown import Columns, columns_with_figures, line, number
 from experiments.spread import Row
 
-Columns = dict[str, str]
-"""Key of a figure to the head of its column."""
 OURS = ("unsupervised_joint", "unsupervised")
 """Our trackers, the default recipe's first."""
 SHOWN = {"unsupervised": "unsupervised_sequential", "unsupervised_unrefined": "unsupervised_sequential_unrefined"}
@@ -39,8 +38,7 @@ HEAD = """# Results
 
 Written by `make results` from docs/results/trackers.json, which holds more. Mean over seeds, with the worst seed in
 brackets where seeds differ; test clips only, in pixels of a 128-px frame. "paper" is the figure printed in Ehrhardt et
-al. 2018; for a simulated stand-in, that of the real set. Rows of an earlier commit stand until they are measured again;
-the JSON names each row's.
+al. 2018; for a simulated stand-in, that of the real set. Rows of an earlier commit stand until they are measured again.
 
 Ours are two recipes. `unsupervised_joint`, the default one, finds all objects at once and is told nothing; `metrics/`,
 the report and the README call it `unsupervised`. `unsupervised_sequential` (`unsupervised` in the JSON) finds one
@@ -100,16 +98,25 @@ def _section(name: str, rows: Mapping[str, Row]) -> str:
     order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
     lines = [line(["tracker", *columns.values()]), line(["---", *["---:"] * len(columns)])]
     lines += [line([f"`{SHOWN.get(each, each)}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
+    return f"## {name}\n\n{_measured(rows)}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+
+
+def _measured(rows: Mapping[str, Row]) -> str:
+    """How ours was measured, and which rows were measured with other seeds or by other code."""
     about = _ours(rows) or next(iter(rows.values()))
-    seeds = ", ".join(map(str, about["seeds"]))
     time = "" if about["time_s"] is None else f", {about['time_s']:.0f} s the longest seed"
-    told = f"Seeds {seeds}; commit {about['commit']}; {about['machine']}{time}; finished {about['finished'][:10]}."
-    return f"## {name}\n\n{told}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+    told = [f"{_run(about)}; {about['machine']}{time}; finished {about['finished'][:10]}."]
+    others: dict[str, list[str]] = {}
+    for name, row in rows.items():
+        if _run(row) != _run(about):
+            others.setdefault(_run(row), []).append(f"`{SHOWN.get(name, name)}`")
+    told += [f"{run}: {', '.join(names)}." for run, names in others.items()]
+    return " ".join(told)
 
 
-def columns_with_figures(columns: Columns, rows: Collection[Row]) -> Columns:
-    """Those that some row has a figure for."""
-    return {key: head for key, head in columns.items() if any(row.get(key) is not None for row in rows)}
+def _run(row: Row) -> str:
+    seeds = ", ".join(map(str, row["seeds"]))
+    return f"Seed{'s' if len(row['seeds']) > 1 else ''} {seeds}; commit {row['commit']}"
 
 
 def _ours(rows: Mapping[str, Row]) -> Row:
@@ -118,11 +125,6 @@ def _ours(rows: Mapping[str, Row]) -> Row:
 
 def _rank(row: Row) -> float:
     return float("inf") if row.get("mean_px") is None else row["mean_px"]
-
-
-def line(cells: list[str]) -> str:
-    """A row of a Markdown table."""
-    return f"| {' | '.join(cells)} |\n"
 
 
 def _cell(key: str, row: Row) -> str:
@@ -141,12 +143,3 @@ def _cell(key: str, row: Row) -> str:
 def _how_many(verdicts: list[bool | None]) -> str | None:
     """`2 of 3`; None where all are alike."""
     return f"{verdicts.count(True)} of {len(verdicts)}" if len(set(verdicts)) > 1 else None
-
-
-def number(value: Any) -> str:
-    """A figure in two decimals or none, a dash for what is not known."""
-    if value is None:
-        return "–"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:.0f}" if isinstance(value, int) or abs(value) >= 100 else f"{value:.2f}"

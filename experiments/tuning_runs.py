@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from experiments.markdown import line, number
 from experiments.records import Experiment, Result, about, on_one_set
 from experiments.spread import Row
-from experiments.tables import line, number
 
 PREDICTOR = "dispnet"
 """The paper's own."""

@@ -99,6 +99,18 @@ def test_where_some_seeds_lock_the_page_says_how_many():
     assert "| `unsupervised_sequential` | 1.00 (1.50) | 4.10 | 2.00 (3.00) | – | 1 of 2 |" in lines
 
 
+def test_the_page_says_which_rows_have_other_seeds_or_are_of_another_commit():
+    rows = table(result(0.5, 1.0), result(1.5, 1.0))["bowls"]
+    rows |= {"flow_blob": rows["flow_blob"] | {"seeds": [0], "commit": "def5678"}}
+    told = page({"bowls": rows}, {}, SPEED).splitlines()
+    assert any(
+        line.startswith("Seeds 0, 1; commit abc1234; here, 60 s the longest seed; finished 2026-01-02.")
+        and line.endswith(" Seed 0; commit def5678: `flow_blob`.")
+        for line in told
+    )
+    assert ": `lab`" not in "".join(told)
+
+
 def test_the_verdict_is_between_ours_and_tools_that_learn_nothing():
     won = verdict(table(result(0.5, 1.0))["bowls"])
     assert won.startswith("In mean ours is as good or better: 1.00 px of `lab` (it lost 25% of")
