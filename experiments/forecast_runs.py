@@ -10,6 +10,10 @@ from experiments.tracker_runs import Table
 
 OURS = "terrain"
 """Stands beside every predictor of the paper."""
+SIZE = "full"
+"""Key of `simulate.sizes`: where a data set has it, ours also learns from that many clips."""
+FULL = f"_{SIZE}"
+"""Ends the name of such a set in the tables."""
 
 
 def grid(paper: Mapping[str, Any], names: Sequence[str]) -> dict[str, dict[str, list[str]]]:
@@ -26,6 +30,14 @@ def grid(paper: Mapping[str, Any], names: Sequence[str]) -> dict[str, dict[str, 
     }
 
 
+def at_full_size(
+    wanted: Mapping[str, Mapping[str, Sequence[str]]], datasets: Mapping[str, Any]
+) -> dict[str, dict[str, list[str]]]:
+    """What is to run besides the grid `wanted`, as a grid: ours, on sets that have a full size."""
+    sizes = {name: datasets[name].get("simulate", {}).get("sizes", {}) for name in wanted}
+    return {f"{name}{FULL}": {OURS: list(wanted[name][OURS])} for name, each in sizes.items() if SIZE in each}
+
+
 def experiments(
     wanted: Mapping[str, Mapping[str, Sequence[str]]], datasets: Mapping[str, Any], seed: int
 ) -> dict[tuple[str, str], Experiment]:
@@ -33,12 +45,18 @@ def experiments(
     return {
         (name, predictor): Experiment(
             f"forecasts-{name}-{predictor}-seed{seed}",
-            on_one_set(name, seed, "simulate" in datasets[name], predictor, supervised="truth" in sources),
+            _told(name, seed, datasets, predictor, "truth" in sources),
             "predictors",
         )
         for name, predictors in wanted.items()
         for predictor, sources in predictors.items()
     }
+
+
+def _told(name: str, seed: int, datasets: Mapping[str, Any], predictor: str, supervised: bool) -> tuple[str, ...]:
+    dataset = name.removesuffix(FULL)
+    told = on_one_set(dataset, seed, "simulate" in datasets[dataset], predictor, supervised)
+    return told if name == dataset else (*told, f"datasets.{dataset}.simulate.size={SIZE}")
 
 
 def collect(
@@ -55,6 +73,6 @@ def collect(
         result = results[experiment]
         for source in ("tracks", "truth"):
             block = table.setdefault(name, {}).setdefault(source, {})
-            for predictor, row in result.figures[name].get(source, {}).items():
+            for predictor, row in result.figures[name.removesuffix(FULL)].get(source, {}).items():
                 block.setdefault(predictor, {**over_seeds({seed: row}), **about({seed: result})})
     return table

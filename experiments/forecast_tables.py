@@ -38,8 +38,9 @@ HEAD = """# Forecasts
 
 From docs/results/predictors.json. Error of the forecast from the first four frames (six for `vin`), in pixels of a
 128-px frame, on test clips; T is the set's `predict.horizon`, the last frame learned. `dispnet_long` learned to
-`predict.interpolation`; `interpnet` also sees the frame there, not the positions in it. `terrain` is ours. "frames to a
-radius": the median, until the error exceeds the ball's radius. "90 % hold": the share of true positions within the
+`predict.interpolation`; `interpnet` also sees the frame there, not the positions in it. `terrain` is ours; it also
+learns from as many clips as the `full` size of a set has (`simulate.size`), in a section that is named so. "frames to
+a radius": the median, until the error exceeds the ball's radius. "90 % hold": the share of true positions within the
 ellipse that should hold 90 %; what gives none of its own has a circle, fitted to how far it missed the validation
 clips (rows of earlier commits have none). "Energy drift": what a forecast wins (+) or loses (-) that the simulated
 balls did not, as a share of their energy where it begins.

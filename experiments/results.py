@@ -77,11 +77,16 @@ def main() -> None:
     seeds = [int(word) for word in chosen.seeds.split(",")]
     followed = tracker_runs.experiments(names, datasets, seeds)
     grid = forecast_runs.grid(yaml.safe_load(PAPER.read_text()), names)
-    forecast = forecast_runs.experiments(grid, datasets, seeds[0])
     tuned = tuning_runs.experiments(list(grid), datasets, seeds[0])
+    grid |= forecast_runs.at_full_size(grid, datasets)
+    forecast = forecast_runs.experiments(grid, datasets, seeds[0])
     asked = set(chosen.sets.split(",") if chosen.sets else names), set(chosen.recipes.split(","))
     now = [each for (name, recipe, _), each in followed.items() if name in asked[0] and recipe in asked[1]]
-    now += [each for (name, _), each in forecast.items() if name in asked[0] and FORECASTS in asked[1]]
+    now += [
+        each
+        for (name, _), each in forecast.items()
+        if name.removesuffix(forecast_runs.FULL) in asked[0] and FORECASTS in asked[1]
+    ]
     now += [each for name, each in tuned.items() if name in asked[0] and FINETUNED in asked[1]]
     try:
         failed = {} if chosen.collect else run_missing(now, chosen.jobs)
@@ -101,7 +106,7 @@ def main() -> None:
         _save(name, table)
     unrun = {name: absent.get(name, "not run yet") for name in datasets if name not in trackers}
     pages = [tables.page(trackers, unrun, speed), forecast_tables.page(predictors, grid), findings.page(predictors)]
-    PAGE.write_text("\n".join([*pages, tuning_runs.page(together, list(grid))]))
+    PAGE.write_text("\n".join([*pages, tuning_runs.page(together, list(tuned))]))
     for experiment, reason in failed.items():
         print(f"failed {experiment.label}: {reason}", file=sys.stderr)
     sys.exit(bool(failed))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import yaml
 
-from experiments.forecast_runs import collect, experiments, grid
+from experiments.forecast_runs import at_full_size, collect, experiments, grid
 from experiments.forecast_tables import page
 from experiments.records import Result
 
@@ -37,6 +37,17 @@ def test_an_experiment_runs_one_predictor_on_one_set_and_learns_from_truth_where
     assert {"run.learned=[vin]", "run.supervised=[bowls]", "compute.seed=3"} <= set(on_truth.overrides)
     assert on_truth.measured == "predictors"
     assert "run.supervised=[]" in wanted["bowlr_sim", "vin"].overrides
+
+
+def test_ours_also_learns_from_the_full_size_of_a_set_that_has_one():
+    full = at_full_size(GRID, DATASETS)
+    assert full == {"heights_full": {"terrain": GRID["heights"]["terrain"]}}
+    wanted = experiments(GRID | full, DATASETS, seed=0)
+    larger, default = wanted["heights_full", "terrain"], wanted["heights", "terrain"]
+    assert {*larger.overrides} - {*default.overrides} == {"datasets.heights.simulate.size=full"}
+    figures = {"heights": {"tracks": {"terrain": {"error_T_px": 5.0, "clips": 160}}}}
+    found = {larger: Result(figures, "abc1234", "2026-01-02T03:04:05+00:00", "here", 60.0)}
+    assert collect(wanted, found, seed=0)["heights_full"]["tracks"]["terrain"]["error_T_px"] == 5
 
 
 def test_rows_are_told_apart_by_what_was_learned_from_and_the_others_are_in_once():
