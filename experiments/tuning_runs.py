@@ -20,8 +20,8 @@ HEAD = f"""# Tracker and predictor tuned together
 
 From docs/results/finetuned.json. `{PREDICTOR}` and the tracker's detector learn on together, without labels
 (`run.finetuned`; docs/pipeline.md says how). "kept": whether no figure that is known without labels got worse; where
-one did, the former two stay. Errors on test clips, before and after: of detections, of tracks (moved to
-the objects' middles), of forecasts from those tracks.
+one did, the former two stay. That looks at detections, and the tracks, moved from them to the objects' middles, may
+still get a little worse. Errors on test clips, before and after: of detections, of tracks, of forecasts from those.
 """
 
 
@@ -75,9 +75,26 @@ def page(table: Mapping[str, Row], names: Sequence[str]) -> str:
     columns = ["set", "kept", *heads, "commit"]
     rows = [line([f"`{name}`", number(row["kept"]), *_cells(row), row["commit"]]) for name, row in table.items()]
     lacking = [f"`{name}`" for name in names if name not in table]
-    told = [f"Not run yet: {', '.join(lacking)}.\n"] if lacking else []
+    told = [gained(table), f"Not run yet: {', '.join(lacking)}.\n"] if lacking else [gained(table)]
     shown = [line(columns) + line(["---", "---", *["---:"] * len(heads), "---"]) + "".join(rows)] if rows else []
     return "\n".join([HEAD, *shown, *told])
+
+
+def gained(table: Mapping[str, Row]) -> str:
+    """In how many sets the tuned pair was kept, and what each figure won or lost by it there."""
+    kept = {name: row for name, row in table.items() if row["kept"]}
+    changes = [
+        f"{words} {', '.join(f'{change:+.3f} (`{name}`)' for name, change in known.items())}"
+        for figure, (words, *_) in FIGURES.items()
+        if (known := _changes(kept, figure))
+    ]
+    told = f"Kept on {len(kept)} of {len(table)} sets."
+    return f"{told} What that changed, less being better: {'; '.join(changes)}.\n" if changes else f"{told}\n"
+
+
+def _changes(kept: Mapping[str, Row], figure: str) -> dict[str, float]:
+    pairs = {name: (row[f"{figure}_before"], row[f"{figure}_after"]) for name, row in kept.items()}
+    return {name: after - before for name, (before, after) in pairs.items() if None not in (before, after)}
 
 
 def _cells(row: Row) -> list[str]:

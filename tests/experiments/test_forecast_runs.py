@@ -63,19 +63,43 @@ def test_rows_are_told_apart_by_what_was_learned_from_and_the_others_are_in_once
 def test_the_page_has_the_papers_figures_beside_ours_and_names_what_has_not_run():
     wanted = experiments(GRID, DATASETS, seed=0)
     lines = page(collect(wanted, {wanted["bowls", "dispnet"]: result(4.0)}, seed=0), GRID).splitlines()
-    assert "| predictor | learned from | at T px | paper |" in lines
-    assert "| `dispnet` | unsupervised tracks | 4.00 | 3.90 |" in lines
-    assert "| `persistence` | true positions | 33.00 | – |" in lines
+    assert "| predictor | learned from | at T px | paper | s | commit |" in lines
+    assert "| `dispnet` | unsupervised tracks | 4.00 | 3.90 | 60.00 | abc1234 |" in lines
+    assert "| `persistence` | true positions | 33.00 | – | 60.00 | abc1234 |" in lines
     lacking = lines[lines.index("## Forecasts on bowls") + 2]
     assert lacking.startswith("Not run yet: `ifs`, `vin`")
     assert "`dispnet`" not in lacking
     assert "## Forecasts on heightr2_sim" in lines
 
 
+def test_the_page_names_what_errs_least_beside_the_paper_and_what_stands_still():
+    net = {
+        "error_T_px": 4.0,
+        "error_T_px_low": 3.0,
+        "error_T_px_high": 5.0,
+        "paper_error_T_px": 3.9,
+        "error_2T_px": 9.0,
+    }
+    still = {"error_T_px": 33.0, "error_2T_px": 8.0}
+    text = page({"bowls": {"tracks": {"dispnet": {**net, **TOLD}, "persistence": {**still, **TOLD}}}}, {})
+    assert "| `dispnet` | unsupervised tracks | 4.00 [3.00–5.00] |" in text
+    learned = "learned from unsupervised tracks:"
+    assert f"Least at T, {learned} 4.00 px of `dispnet`, 3.90 px in the paper, 33.00 px by standing still." in text
+    assert f"Least at 2T, {learned} 8.00 px of `persistence`." in text
+
+
+def test_how_sure_a_forecast_is_has_a_table_of_those_that_say_it():
+    row = {"error_T_px": 1.0, "coverage_90_T": 0.9, "coverage_90": 0.8, "nll_bits": 6.0, "paper_nll_bits": 6.3}
+    text = page({"bowls": {"tracks": {"probnet": {**row, **TOLD}, "linear": {"error_T_px": 9.0, **TOLD}}}}, {})
+    sure = text[text.index("90 % hold at T |") :]
+    assert "| `probnet` | unsupervised tracks | 0.90 | 0.80 | 6.00 | 6.30 |" in sure
+    assert "`linear`" not in sure
+
+
 def test_interpolation_has_a_table_of_its_own():
     row = {"error_10_px": 1.5, "paper_error_10_px": 3.8, "error_T_px": 1.0, **TOLD}
     text = page({"bowls": {"tracks": {"interpnet": row}}}, {})
-    assert "| `interpnet` | unsupervised tracks | 1.50 | 3.80 |" in text.splitlines()
+    assert "| `interpnet` | unsupervised tracks | 1.50 | 3.80 | a |" in text.splitlines()
 
 
 def test_the_page_says_what_coverage_so_few_clips_can_tell_apart():

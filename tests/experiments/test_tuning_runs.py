@@ -5,7 +5,7 @@ from pathlib import Path
 import yaml
 
 from experiments.records import Result
-from experiments.tuning_runs import collect, experiments, of_trackers, page
+from experiments.tuning_runs import collect, experiments, gained, of_trackers, page
 
 DATASETS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["datasets"]
 WANTED = experiments(["bowls", "heights"], DATASETS, seed=3)
@@ -52,6 +52,14 @@ def test_where_the_former_two_stay_nothing_changes():
     row = collect(WANTED, found, seed=3)["bowls"]
     assert not row["kept"]
     assert (row["detections_px_after"], row["T_px_after"]) == (row["detections_px_before"], row["T_px_before"])
+
+
+def test_the_page_says_what_was_gained_and_lost_where_the_pair_was_kept():
+    table = collect(WANTED, known(), seed=3)
+    told = gained(table)
+    assert told.startswith("Kept on 1 of 1 sets.")
+    assert "detections px -0.250 (`bowls`); tracks px +0.010 (`bowls`); at T px -0.500 (`bowls`)." in told
+    assert gained({"bowls": table["bowls"] | {"kept": False}}) == "Kept on 0 of 1 sets.\n"
 
 
 def test_one_file_alone_makes_no_row():
