@@ -6,18 +6,23 @@ import platform
 import re
 import subprocess
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
 import torch
+import yaml
 
 AFTER_TRACKS = ["physpipe/predictors", "physpipe/predictor_learning", "physpipe/finetuning"]
 """Code that only forecasts depend on: trackers need not be measured again when it changes."""
 DATA = "data"
-ALL = ("physpipe", "stages", DATA, "dvc.yaml", "params.yaml")
+PARAMS = "params.yaml"
+ALL = ("physpipe", "stages", DATA, "dvc.yaml")
 CODE = {"trackers": (*ALL, *(f":(exclude){folder}" for folder in AFTER_TRACKS)), "predictors": ALL}
-"""What is measured to the code and the params that it depends on, as Git's path arguments."""
+"""What is measured to the code that it depends on, as Git's path arguments."""
+UNREAD = {"trackers": ("predictors", "finetune", "evaluate_predictors", "report"), "predictors": ("finetune",)}
+"""What is measured to the sections of params.yaml that it does not depend on, unless a predictor is tuned with it."""
 ONE_THREAD = "compute.threads=1"
 """As many experiments run at once as there are cores: on two, 1.5 times as fast as one at a time on two threads."""
 COSTS = Path(".scratch/experiments")
@@ -42,6 +47,16 @@ class Experiment(NamedTuple):
     def name(self) -> str:
         """Its name in DVC: other overrides under the same label are another experiment."""
         return f"{self.label}-{hashlib.sha256(chr(10).join(self.overrides).encode()).hexdigest()[:6]}"
+
+    def reads(self, params: Mapping[str, Any]) -> dict[str, Any]:
+        """The sections of params.yaml that it depends on, those of other data sets and predictors left out."""
+        run = dict(each.split("=", 1) for each in self.overrides)
+        unread = UNREAD[self.measured] if run.get("run.finetuned", "[]") == "[]" else ()
+        read = {key: section for key, section in params.items() if key not in unread}
+        for key, chosen in (("datasets", run.get("run.datasets")), ("predictors", run.get("run.learned"))):
+            if key in read and chosen is not None:
+                read[key] = {name: params[key].get(name) for name in yaml.safe_load(chosen)}
+        return read
 
 
 class Result(NamedTuple):
@@ -89,19 +104,25 @@ def on_one_set(
 
 
 def finished(wanted: Iterable[Experiment], run: Runner = command) -> dict[str, str]:
-    """Name to revision of each that has run on today's code."""
-    measured = {each.name: each.measured for each in wanted}
-    today: dict[tuple[str, str], bool] = {}
+    """Name to revision of each that has run on today's code, and on today's params as far as it reads them."""
+    known = {each.name: each for each in wanted}
+
+    @cache
+    def of_today(base: str, measured: str) -> bool:
+        return not run("git", "diff", "--name-only", base, "HEAD", "--", *CODE[measured]).strip()
+
+    @cache
+    def params(commit: str) -> dict[str, Any]:
+        return yaml.safe_load(run("git", "show", f"{commit}:{PARAMS}"))
+
     revisions = {}
     for line in run("git", "for-each-ref", "--format=%(objectname) %(refname)", "refs/exps").splitlines():
         found = re.fullmatch(r"(\w+) refs/exps/(\w{2})/(\w{38})/(.+)", line)
-        if found and found[4] in measured:
-            revision, base, name = found[1], found[2] + found[3], found[4]
-            key = base, measured[name]
-            if key not in today:
-                today[key] = not run("git", "diff", "--name-only", base, "HEAD", "--", *CODE[measured[name]]).strip()
-            if today[key]:
-                revisions[name] = revision
+        if found and found[4] in known:
+            base, experiment = found[2] + found[3], known[found[4]]
+            as_read = experiment.reads(params(base)) == experiment.reads(params("HEAD"))
+            if as_read and of_today(base, experiment.measured):
+                revisions[experiment.name] = found[1]
     return revisions
 
 
@@ -114,7 +135,7 @@ def read_results(wanted: Sequence[Experiment], run: Runner = command) -> dict[Ex
 def _read(experiment: Experiment, revision: str, run: Runner) -> Result:
     figures = json.loads(run("git", "show", f"{revision}:metrics/{experiment.measured}.json"))
     date = run("git", "show", "--no-patch", "--format=%cI", revision).split()[-1]
-    code = (path for path in CODE[experiment.measured] if path != DATA)
+    code = (PARAMS, *(path for path in CODE[experiment.measured] if path != DATA))
     commit = run("git", "log", "-1", "--format=%h", f"{revision}^", "--", *code).strip()
     note = COSTS / f"{experiment.name}.json"
     cost = json.loads(note.read_text()) if note.is_file() else {"machine": None, "time_s": None}

@@ -42,11 +42,47 @@ def test_code_of_forecasts_alone_makes_no_track_and_every_forecast_out_of_date()
 
     def git(*words: str) -> str:
         told.append(words)
-        return f"{'1' * 40} refs/exps/{BASE[:2]}/{BASE[2:]}/{ONE.name}" if words[1] == "for-each-ref" else ""
+        answers = {"for-each-ref": f"{'1' * 40} refs/exps/{BASE[:2]}/{BASE[2:]}/{ONE.name}", "show": "{}"}
+        return answers.get(words[1], "")
 
     for each in (ONE, ONE._replace(measured="predictors")):
         assert finished([each], git) == {ONE.name: "1" * 40}
     assert [f":(exclude){AFTER_TRACKS[0]}" in words for words in told if words[1] == "diff"] == [True, False]
+
+
+PARAMS = {
+    "tracker": {"steps": 9},
+    "datasets": {"bowls": {"T": 20}, "tray": {"T": 40}},
+    "predictors": {"vin": {"width": 8}, "terrain": {"width": 8}},
+    "finetune": {"weight": 1},
+}
+
+
+@pytest.mark.parametrize(
+    ("changed", "stale"),
+    [
+        ({"tracker": {"steps": 10}}, {"tracks", "forecasts", "tuned"}),
+        ({"datasets": {"bowls": {"T": 21}, "tray": {"T": 40}}}, {"tracks", "forecasts", "tuned"}),
+        ({"datasets": {"bowls": {"T": 20}, "tray": {"T": 41}}}, set()),
+        ({"predictors": {"vin": {"width": 9}, "terrain": {"width": 8}}}, {"forecasts", "tuned"}),
+        ({"predictors": {"vin": {"width": 8}, "terrain": {"width": 9}}}, set()),
+        ({"finetune": {"weight": 2}}, {"tuned"}),
+    ],
+)
+def test_params_that_an_experiment_does_not_read_leave_it_as_it_is(changed, stale):
+    wanted = {
+        "tracks": Experiment("tracks", on_one_set("bowls", 0, simulated=True)),
+        "forecasts": Experiment("forecasts", on_one_set("bowls", 0, True, "vin"), "predictors"),
+        "tuned": Experiment("tuned", on_one_set("bowls", 0, True, "vin", finetuned=True)),
+    }
+
+    def git(*words: str) -> str:
+        refs = [f"{'1' * 40} refs/exps/{BASE[:2]}/{BASE[2:]}/{each.name}" for each in wanted.values()]
+        now = PARAMS | changed if words[-1].startswith("HEAD") else PARAMS
+        return {"for-each-ref": "\n".join(refs), "show": yaml.safe_dump(now)}.get(words[1], "")
+
+    left = finished(wanted.values(), git)
+    assert {name for name, each in wanted.items() if each.name not in left} == stale
 
 
 def test_only_one_data_set_s_trackers_are_left_to_run():
