@@ -104,7 +104,36 @@ def test_every_section_that_a_stage_reads_is_among_its_params_and_every_param_is
     read = sections_read(name)
     within = lambda inner, outer: inner == outer or inner.startswith(outer + ".")  # noqa: E731
     assert [each for each in read if not any(within(each, param) for param in named)] == []
-    assert [param for param in named if not any(within(each, param) for each in read)] == []
+    idle = [param for param in named if not any(within(each, param) or within(param, each) for each in read)]
+    assert idle == []
+
+
+def keys_below(section: object) -> set[str]:
+    """Dotted names of all keys within a section."""
+    if not isinstance(section, dict):
+        return set()
+    return set(section) | {f"{key}.{below}" for key, each in section.items() for below in keys_below(each)}
+
+
+def sections(params: dict, named: str) -> list[object]:
+    """What stands in params.yaml under a dotted name, whatever `*` in it stands for."""
+    found = [params]
+    for key in named.split("."):
+        inside = [each for each in found if isinstance(each, dict)]
+        found = [each[k] for each in inside for k in (each if key == "*" else [key]) if k in each]
+    return found
+
+
+@pytest.mark.parametrize("name", [each for each in STAGES if each != "evaluate_predictors"])
+def test_params_that_the_run_cache_leaves_out_within_a_section_are_named_by_themselves(name):
+    """DVC compares no file's `size` and `nfiles`, nor a param of that name.
+
+    The clips that are evaluated are of that size, so they tell.
+    """
+    params = yaml.safe_load((ROOT / "params.yaml").read_text())
+    named = set(paths(body(name).get("params", [])))
+    below = {f"{each}.{key}" for each in named for found in sections(params, each) for key in keys_below(found)}
+    assert {key for key in below if key.rsplit(".", 1)[1] in ("size", "nfiles")} <= named
 
 
 def test_no_number_or_default_path_hides_in_a_command():
