@@ -120,8 +120,8 @@ def finished(wanted: Iterable[Experiment], run: Runner = command) -> dict[str, s
         found = re.fullmatch(r"(\w+) refs/exps/(\w{2})/(\w{38})/(.+)", line)
         if found and found[4] in known:
             base, experiment = found[2] + found[3], known[found[4]]
-            as_read = experiment.reads(params(base)) == experiment.reads(params("HEAD"))
-            if as_read and of_today(base, experiment.measured):
+            same_code = of_today(base, experiment.measured)
+            if same_code and experiment.reads(params(base)) == experiment.reads(params("HEAD")):
                 revisions[experiment.name] = found[1]
     return revisions
 
