@@ -23,7 +23,7 @@ def springs(clips: int, frames: int, sees_end: bool = False) -> Window:
     xy = torch.tensor([WIDTH, HEIGHT]) / 2 + amplitude * torch.cos(0.25 * times[..., None] + phase)
     seen = [0, 1, 2, 3, *([frames - 1] if sees_end else [])]
     xy = xy.unsqueeze(2)
-    return Window(Seen(spots(xy[:, seen, 0]), xy[:, :4], times[:, seen]), times[:, 4:], xy[:, 4:], 80.0)
+    return Window(Seen(spots(xy[:, seen, 0]), xy[:, :4], times[:, seen]), times[:, 4:], xy[:, 4:], 80.0, xy)
 
 
 def spots(xy: Tensor) -> Tensor:

@@ -62,8 +62,9 @@ def test_every_predictor_s_section_builds_one_that_takes_a_step(name):
     film = torch.rand(2, kind.seen_frames + kind.sees_end, 3, 64, 64, generator=torch_generator(0))
     times = torch.arange(kind.seen_frames + 2.0).expand(2, -1)
     seen_times = times[:, [*range(kind.seen_frames), *([-1] if kind.sees_end else [])]]
-    seen = Seen(film, torch.full((2, kind.seen_frames, 1, 2), 30.0), seen_times)
-    batch = Window(seen, times[:, -2:], torch.full((2, 2, 1, 2), 30.0), 80.0)
+    track = torch.full((2, kind.seen_frames + 2, 1, 2), 30.0)
+    seen = Seen(film, track[:, :-2], seen_times)
+    batch = Window(seen, times[:, -2:], track[:, -2:], 80.0, track)
     loss, _ = predictor.loss(batch, torch_generator(1))
     loss.backward()
     assert torch.isfinite(loss)

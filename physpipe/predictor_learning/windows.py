@@ -9,6 +9,7 @@ import torch
 from numpy.typing import NDArray
 from pydantic import Field
 from torch import Tensor
+from torch.nn.utils.rnn import pad_sequence
 
 from physpipe.core.determinism import device
 from physpipe.core.errors import InputError
@@ -102,11 +103,13 @@ class TrackWindows:
         cut = [self._cut(number) for number in numbers]
         if symmetries is not None:
             cut = [mirrored(*window, how) for window, how in zip(cut, symmetries, strict=True)]
-        xy = torch.from_numpy(np.stack([positions for _, positions in cut])).to(device())
+        track = _padded([positions for _, positions in cut]).to(device())
+        within = torch.from_numpy(self.index[list(numbers), 1, None] + np.arange(self.horizon + 1)).to(device())
+        xy = track[torch.arange(len(cut), device=device())[:, None], within]
         times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
         frames = as_input(np.stack([frames for frames, _ in cut]))
         seen = Seen(frames, xy[:, :T0], times[:, self.seen], steady=self.camera is not None)
-        return Window(seen, times[:, -asked:], xy[:, T0:], self.frames_per_s)
+        return Window(seen, times[:, -asked:], xy[:, T0:], self.frames_per_s, track)
 
     def draw(self, count: int, params: WindowParams, generator: torch.Generator) -> Window:
         """`count` random windows, mirrored or not, with noise on the seen positions."""
@@ -132,13 +135,13 @@ class TrackWindows:
         return self.frames[clip][[at + each for each in frames]]
 
     def _cut(self, number: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """The seen frames, and where the objects are in all of the clip."""
         clip, at = self.index[number]
         frames = self.film(number, self.seen)
-        stretch = slice(at, at + self.horizon + 1)
         if self.camera is None:
-            return frames, self.xy[clip][stretch]
-        shift = self.camera[clip][stretch] - self.camera[clip][at + self.seen_frames - 1]
-        return frames, self.xy[clip][stretch] - shift[:, None]
+            return frames, self.xy[clip]
+        shift = self.camera[clip] - self.camera[clip][at + self.seen_frames - 1]
+        return frames, self.xy[clip] - shift[:, None]
 
     def _camera_paths(self) -> list[NDArray[np.float32]]:
         return [camera_path(as_input(np.stack([each]))[0]).cpu().numpy() for each in progress(self.frames, "camera")]
@@ -155,3 +158,8 @@ def _whole(xy: NDArray[np.float32], length: int) -> NDArray[np.bool_]:
     if len(known) < length:
         return np.zeros(0, bool)
     return np.logical_and.reduce(np.lib.stride_tricks.sliding_window_view(known, length), axis=1)
+
+
+def _padded(paths: Sequence[NDArray[np.float32]]) -> Tensor:
+    """(B, L, K, 2) of paths (T, K, 2), those shorter than the longest going on as NaN."""
+    return pad_sequence([torch.from_numpy(np.ascontiguousarray(each)) for each in paths], True, torch.nan)

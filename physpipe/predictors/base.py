@@ -46,6 +46,8 @@ class Window:
     """(B, N, K, 2) pixels."""
     frames_per_s: float
     """Rate of the film."""
+    track: Tensor
+    """(B, L, K, 2) pixels, where the objects are in all of the clip; NaN where one is lost, and after its end."""
 
 
 class Predictor(nn.Module, ABC):

@@ -33,6 +33,7 @@ class Ifs(Predictor):
 
     Params = IfsParams
     seen_frames = 4
+    objects_alike = True
 
     def __init__(self, params: IfsParams, objects: int):
         super().__init__(params, objects)

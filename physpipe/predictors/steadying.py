@@ -19,25 +19,9 @@ FLAT = 1e-4
 
 
 def camera_shifts(frames: Tensor) -> Tensor:
-    """(B, T, 2) shift of the still scene in each of (B, T, 3, H, W) frames since the last, px; for shifts up to a px.
-
-    One step of image registration by gradients (Lucas and Kanade), with gain and offset for drifting light.
-    """
-    grey = F.avg_pool2d(frames.float().mean(2), 3, stride=1)  # (B, T, H - 2, W - 2); a little smoothing
-    between = (grey + grey[:, -1:]) / 2  # slopes half-way: else they would be those of one end
-    along_x = _slopes(between)[:, :, MARGIN:-MARGIN:EVERY, ::EVERY]
-    along_y = _slopes(between.transpose(2, 3)).transpose(2, 3)[:, :, ::EVERY, MARGIN:-MARGIN:EVERY]
-    level, change = (each[:, :, MARGIN:-MARGIN:EVERY, MARGIN:-MARGIN:EVERY] for each in (between, grey - grey[:, -1:]))
-    basis = torch.stack([along_x, along_y, level, torch.ones_like(level)], dim=-1).flatten(2, 3)
-    change = change.flatten(2).unsqueeze(-1)  # (B, T, P, 1)
-    weight = torch.ones_like(change)
-    found = torch.zeros(1)
-    for _ in range(ROUNDS):
-        weighted = (basis * weight).transpose(-1, -2)
-        found = torch.linalg.solve(weighted @ basis + FLAT * torch.eye(4, device=frames.device), weighted @ change)
-        left = (change - basis @ found).abs()
-        weight = (left < 3 * left.mean(2, keepdim=True)).to(change)
-    return -found[..., :2, 0]
+    """(B, T, 2) shift of the still scene in each of (B, T, 3, H, W) frames since the last; px, at most about 1."""
+    grey = _smooth(frames)
+    return _shifts(grey, grey[:, -1:])
 
 
 def steadied(seen: Seen) -> Seen:
@@ -52,8 +36,37 @@ def camera_path(frames: Tensor) -> Tensor:
 
     Summed from frame to frame, so errors add up as a random walk.
     """
-    steps = camera_shifts(torch.stack([frames[1:], frames[:-1]], dim=1))[:, 0]
+    grey = _smooth(frames)
+    steps = _shifts(grey[1:], grey[:-1])
     return torch.cat([steps.new_zeros(1, 2), steps.cumsum(0)])
+
+
+def _smooth(frames: Tensor) -> Tensor:
+    """(..., H - 2, W - 2) brightness of frames (..., 3, H, W), a little smoothed."""
+    return F.avg_pool2d(frames.float().mean(-3), 3, stride=1)
+
+
+def _shifts(later: Tensor, earlier: Tensor) -> Tensor:
+    """(..., 2) px of `later` (..., H, W) since `earlier`, of the same shape but for frames that all have one.
+
+    One step of image registration by gradients (Lucas and Kanade), with gain and offset for drifting light.
+    """
+    between = (later + earlier) / 2  # slopes half-way: else they would be those of one end
+    inner = (..., slice(MARGIN, -MARGIN, EVERY), slice(MARGIN, -MARGIN, EVERY))
+    along_x = _slopes(between[..., MARGIN:-MARGIN:EVERY, :])[..., ::EVERY]
+    along_y = _slopes(between[..., MARGIN:-MARGIN:EVERY].transpose(-1, -2)).transpose(-1, -2)[..., ::EVERY, :]
+    level, change = between[inner], (later - earlier)[inner]
+    basis = torch.stack([along_x, along_y, level, torch.ones_like(level)], dim=-1).flatten(-3, -2)
+    change = change.flatten(-2).unsqueeze(-1)  # (..., P, 1)
+    weight = torch.ones_like(change)
+    found = torch.zeros(1)
+    for _ in range(ROUNDS):
+        weighted = (basis * weight).transpose(-1, -2)
+        normal = weighted @ basis + FLAT * torch.eye(4, device=basis.device)
+        found = torch.linalg.solve(normal, weighted @ change)
+        left = (change - basis @ found).abs()
+        weight = (left < 3 * left.mean(-2, keepdim=True)).to(change)
+    return -found[..., :2, 0]
 
 
 def _slopes(image: Tensor) -> Tensor:

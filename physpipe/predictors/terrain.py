@@ -16,7 +16,8 @@ from torch import Tensor, nn
 
 from physpipe.core.params import Section
 from physpipe.predictors.base import Forecast, Predictor, Seen, Window, distance_px
-from physpipe.predictors.kinematics import at, mended, odd, past, smoothed
+from physpipe.predictors.course import Course, stretches
+from physpipe.predictors.kinematics import at, mended, odd, past
 from physpipe.predictors.layers import FrameUnit, zero_reader
 from physpipe.predictors.steadying import steadied
 from physpipe.predictors.symmetry import mean_over_symmetries
@@ -38,6 +39,8 @@ class TerrainParams(Section):
     """Training steps in which the law is matched to smoothed tracks, before forecasts are trained."""
     matched_weight_s2: float = Field(ge=0)
     """Seconds squared, weight of the match in the steps after them: accelerations against positions."""
+    stretches: int = Field(ge=1)
+    """Stretches of a clip's track, besides the seen one, that forecasts are trained on in each step."""
     smoothing_s: float = Field(gt=0)
     """Seconds that a track is smoothed over for it, by a cubic: 5 frames or more, fewer where fewer are asked for."""
     spread_rounds: int = Field(ge=0)
@@ -81,26 +84,27 @@ class Terrain(Predictor):
         """How far off the law is along the tracks, in pixels a frame squared; then that of forecasts in pixels, too."""
         scene, places = self._look(steadied(batch.seen))
         unit = FrameUnit.of(batch.seen.frames)
-        track = torch.cat([places, unit.from_px(batch.target)], dim=1)
-        mismatch = self._mismatch(scene, track, unit, batch.frames_per_s)
+        track = unit.from_px(batch.track)
+        course = Course.of(track, odd(self.params.smoothing_s * batch.frames_per_s), self.law, scene)
+        mismatch = course.mismatch(self.law, scene, unit.px)
         parts = {"train_change_px": mismatch.item()}
+        stretch = torch.cat([places, unit.from_px(batch.target)], dim=1)
+        more = stretches(track, stretch.shape[1], self.params.stretches, generator)
+        every = torch.cat([stretch.unsqueeze(1), more], dim=1)
         self.steps += 1
         if self.steps <= self.params.matched_steps:
-            return mismatch + self.law.see(scene, track), parts
-        path = self._roll(scene, self._begin(scene, places, batch.seen.times), batch.target.shape[1]).squeeze(2)
-        distance = distance_px(unit.to_px(path), batch.target)
-        parts["train_last_px"] = distance[:, -1].mean().item()
-        return distance.mean() + self.params.matched_weight_s2 * batch.frames_per_s**2 * mismatch, parts
+            return mismatch + self.law.see(scene.repeated(every.shape[1]), every.flatten(0, 1)), parts
+        off = self._off(scene, every, batch.seen.times, unit.px)
+        parts["train_last_px"] = off[:, -1, 0].mean().item()
+        return off.mean() + self.params.matched_weight_s2 * batch.frames_per_s**2 * mismatch, parts
 
-    def _mismatch(self, scene: Scene, track: Tensor, unit: FrameUnit, frames_per_s: float) -> Tensor:
-        """Mean distance in px of the law's changes of velocity from those of `track` (B, T, K, 2), frame by frame.
-
-        Of frames far from any touch: smoothing smears what happens in one over all frames around.
-        """
-        place, velocity, turn = smoothed(track, odd(self.params.smoothing_s * frames_per_s))
-        found = self.law(scene, Motion.rolling(place, velocity)).velocity - velocity
-        free = self.law.untouched(scene, track, width=track.shape[1] - place.shape[1] + 1)
-        return (free * distance_px(unit.px * found, unit.px * turn)).sum() / (free.sum() * self.objects).clamp_min(1)
+    def _off(self, scene: Scene, every: Tensor, times: Tensor, px: Tensor) -> Tensor:
+        """(B, N, M, K) px that forecasts of stretches (B, M, T0 + N, K, 2), their frames at `times`, are off."""
+        M, T0 = every.shape[1], self.seen_frames
+        seen, later = every[:, :, :T0].flatten(0, 1), every[:, :, T0:].movedim(1, 2)
+        begun = self._begin(scene.repeated(M), seen, times.repeat_interleave(M, 0))
+        now = Motion(*(each.unflatten(0, (-1, M)).squeeze(2) for each in begun))
+        return distance_px(px * self._roll(scene, now, later.shape[1]), px * later)
 
     def calibrate(self, held_out: Window) -> None:
         """Fits the covariance, which is of no use before."""

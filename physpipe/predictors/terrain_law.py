@@ -1,6 +1,6 @@
 """The law of motion on a terrain: one frame ahead, read from the terrain's map at the place of each object (ours)."""
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import torch
 from torch import Tensor, nn
@@ -25,7 +25,7 @@ class Motion(NamedTuple):
     """(B, M, K, 2) how much faster it is than it rolls, since it ran into something; a frame."""
 
     @classmethod
-    def rolling(cls, place: Tensor, velocity: Tensor) -> "Motion":
+    def rolling(cls, place: Tensor, velocity: Tensor) -> Self:
         """Of objects that have run into nothing."""
         return cls(place, velocity, torch.zeros_like(velocity))
 
@@ -41,6 +41,11 @@ class Scene(NamedTuple):
     """(B, K, O) codes of the objects."""
     aspect: Tensor
     """(2,) width and height of the frame, half of its longer side being 1."""
+
+    def repeated(self, times: int) -> "Scene":
+        """Every scene so many times, one after the other."""
+        ground, whole, objects = (each.repeat_interleave(times, 0) for each in (self.map, self.whole, self.objects))
+        return Scene(ground, whole, objects, self.aspect)
 
 
 class Law(nn.Module):

@@ -20,6 +20,8 @@ from physpipe.scoring.forecast_figures import MULTIPLES, Figures, mean_of_known
 
 AROUND = np.arange(-2, 3)
 """Frames that tell the energy in the middle one."""
+HORIZONS = ("T", "2T")
+"""Keys of MULTIPLES at which it is told: forecasts end at 4 T, and none goes two frames further."""
 
 
 class Replay:
@@ -69,12 +71,12 @@ def _again(params: WorldParams, name: str, number: int) -> World:
 
 
 def energy_figures(table: pd.DataFrame, known: Mapping[str, Replay], horizon: int) -> Figures:
-    """`energy_drift_*`, the mean over clips, and `energy_off_*`, that of its size, at T, 2 T and 4 T; NaN where no
-    simulator knows.
+    """`energy_drift_*`, the mean over clips, and `energy_off_*`, that of its size, at HORIZONS; NaN where no simulator
+    knows.
     """
     paths = [(known[clip], path) for clip, path in forecasts.by_clip(table).items() if clip in known]
     figures: Figures = {}
-    for name, times in MULTIPLES.items():
-        drifts = np.array([replay.drift(path, times * horizon) for replay, path in paths])
+    for name in HORIZONS:
+        drifts = np.array([replay.drift(path, MULTIPLES[name] * horizon) for replay, path in paths])
         figures |= {f"energy_drift_{name}": mean_of_known(drifts), f"energy_off_{name}": mean_of_known(np.abs(drifts))}
     return figures

@@ -35,6 +35,7 @@ SMALL = {
         code=2,
         matched_steps=0,
         matched_weight_s2=1,
+        stretches=1,
         smoothing_s=0.06,
         spread_rounds=8,
         symmetric=True,
@@ -51,7 +52,7 @@ def random_window(kind: type[Predictor], frames: int, clips: int = 2) -> Window:
     xy = torch.tensor([WIDTH, HEIGHT]) / 2 + moves
     times = torch.arange(frames, dtype=torch.float32).expand(clips, -1)
     known, asked = slice(kind.seen_frames), slice(kind.seen_frames, None)
-    return Window(Seen(film, xy[:, known], times[:, seen]), times[:, asked], xy[:, asked], 80.0)
+    return Window(Seen(film, xy[:, known], times[:, seen]), times[:, asked], xy[:, asked], 80.0, xy)
 
 
 def built(name: str, **changed: object) -> Predictor:

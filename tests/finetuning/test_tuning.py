@@ -38,8 +38,8 @@ KINDS = {
     "probnet": ProbNetParams(**STATE, least_std_px=0.25, largest_std_px=40.0, distance_steps=0),
     "interpnet": InterpNetParams(**STATE, first_state=1.0),
     "terrain": TerrainParams(
-        channels=16, hidden=8, code=2, matched_steps=0, matched_weight_s2=1, smoothing_s=0.06, spread_rounds=4,
-        symmetric=False,
+        channels=16, hidden=8, code=2, matched_steps=0, matched_weight_s2=1, stretches=2, smoothing_s=0.06,
+        spread_rounds=4, symmetric=False,
     ),
 }  # fmt: skip
 BEFORE = State(unlocked=False, score=0.3, tracker_px=0.5, forecast_px=2.0, forecast_loss=-1.0)

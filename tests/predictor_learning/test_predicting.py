@@ -31,8 +31,8 @@ MODELS = {
     "probnet": ProbNetParams(**STATE, least_std_px=0.25, largest_std_px=40.0, distance_steps=3),
     "interpnet": InterpNetParams(**STATE, first_state=1.0),
     "terrain": TerrainParams(
-        channels=16, hidden=8, code=2, matched_steps=3, matched_weight_s2=1, smoothing_s=0.06, spread_rounds=4,
-        symmetric=True,
+        channels=16, hidden=8, code=2, matched_steps=3, matched_weight_s2=1, stretches=2, smoothing_s=0.06,
+        spread_rounds=4, symmetric=True,
     ),
 }  # fmt: skip
 FIT = FitParams(

@@ -87,6 +87,19 @@ def test_steady_positions_are_those_in_the_last_seen_frame(tmp_path):
     assert not windows(tmp_path / "shaken").batch([2]).seen.steady
 
 
+def test_the_whole_track_of_the_clip_goes_with_a_window_in_its_coordinates(tmp_path):
+    found = windows(tmp_path / "set", lost=[(1, 11)])
+    found.xy[0] = found.xy[0][:10]
+    batch = found.batch([1, 5])  # from frames 1 of clip 0 and 1 of clip 1
+    assert batch.track.shape == (2, LENGTH, OBJECTS, 2)
+    torch.testing.assert_close(batch.track[:, 1:10], torch.cat([batch.seen.xy, batch.target], dim=1))
+    assert batch.track[0, 10:].isnan().all()
+    assert batch.track[1, 11, 1].isnan().all()
+    turned = found.batch([1, 5], [(True, False, False)] * 2)
+    mirror = torch.stack([27 - batch.track[..., 0], batch.track[..., 1]], dim=-1)
+    torch.testing.assert_close(turned.track, mirror, equal_nan=True)
+
+
 def test_the_end_is_seen_by_a_frame_that_shows_the_last_target_and_by_no_position(tmp_path):
     found = windows(tmp_path / "set", sees_end=True)
     for batch in (found.batch([1, 6]), found.draw(16, drawing(), torch_generator(3))):

@@ -41,7 +41,7 @@ def springs(clips: int, frames: int) -> Window:
     whole = torch.stack(path, dim=1) + torch.tensor([WIDTH, HEIGHT]) / 2
     times = torch.arange(frames, dtype=torch.float32).expand(clips, -1)
     film = FILM.expand(clips, -1, -1, -1, -1)
-    return Window(Seen(film, whole[:, :4], times[:, :4]), times[:, 4:], whole[:, 4:], 80.0)
+    return Window(Seen(film, whole[:, :4], times[:, :4]), times[:, 4:], whole[:, 4:], 80.0, whole)
 
 
 @pytest.mark.parametrize("velocity", [True, False])
@@ -97,7 +97,8 @@ def test_one_batch_is_learned_thirty_fold(velocity):
 def test_a_law_that_runs_away_stays_finite():
     net = ifs(1)
     nn.init.constant_(net.core.output[-1].bias, 1e6)
-    loss, _ = net.loss(Window(seen(objects=1), asked(80), torch.zeros(1, 80, 1, 2), 80.0), torch_generator(0))
+    still = torch.zeros(1, 84, 1, 2)
+    loss, _ = net.loss(Window(seen(objects=1), asked(80), still[:, 4:], 80.0, still), torch_generator(0))
     loss.backward()
     assert loss.isfinite()
     assert all(each.grad is None or each.grad.isfinite().all() for each in net.parameters())

@@ -57,7 +57,7 @@ def leaving(clips: int, generator: torch.Generator) -> Window:
     times = torch.arange(8.0).expand(clips, -1)
     xy = start + (end - start) * ((times - 3) / 4).clamp(min=0)[:, :, None, None]
     seen = [0, 1, 2, 3, 7]
-    return Window(Seen(spots(xy[:, seen, 0]), xy[:, :4], times[:, seen]), times[:, 4:], xy[:, 4:], 80.0)
+    return Window(Seen(spots(xy[:, seen, 0]), xy[:, :4], times[:, seen]), times[:, 4:], xy[:, 4:], 80.0, xy)
 
 
 def test_the_way_to_an_end_that_only_the_last_frame_tells_is_learned_and_not_by_heart():

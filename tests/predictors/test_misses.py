@@ -39,7 +39,8 @@ def wandering(clips: int, seed: int, first: int = 0) -> Window:
     xy = torch.full((clips, 4, 2, 2), 20.0)
     times = torch.arange(first, first + 4.0).expand(clips, -1)
     asked = (first + 3 + AHEAD).expand(clips, -1)
-    return Window(Seen(torch.zeros(clips, 4, 3, 16, 20), xy, times), asked, 20 + 0.5 * steps.cumsum(1), 80.0)
+    later = 20 + 0.5 * steps.cumsum(1)
+    return Window(Seen(torch.zeros(clips, 4, 3, 16, 20), xy, times), asked, later, 80.0, torch.cat([xy, later], dim=1))
 
 
 def test_a_power_of_time_is_found_again():

@@ -62,7 +62,8 @@ def blown(clips: int, generator: torch.Generator) -> Window:
     gusts = torch.randn(clips, 3, 1, 2, generator=generator) * torch.tensor([2.0, 0.7])
     times = torch.arange(7.0).expand(clips, -1)
     film = torch.zeros(clips, 4, 3, 32, 48)
-    return Window(Seen(film, xy.expand(-1, 4, -1, -1), times[:, :4]), times[:, 4:], xy + gusts.cumsum(1), 80.0)
+    track = torch.cat([xy.expand(-1, 4, -1, -1), xy + gusts.cumsum(1)], dim=1)
+    return Window(Seen(film, track[:, :4], times[:, :4]), times[:, 4:], track[:, 4:], 80.0, track)
 
 
 def deviations(values: Tensor) -> Tensor:

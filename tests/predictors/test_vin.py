@@ -23,7 +23,7 @@ def passing(clips: int, frames: int) -> Window:
     velocity = 2 * torch.randn(clips, 1, 2, 2, generator=torch_generator(1))
     times = torch.arange(frames, dtype=torch.float32).expand(clips, -1)
     xy = start + velocity * times[:, :, None, None]
-    return Window(Seen(film(xy[:, :6]), xy[:, :6], times[:, :6]), times[:, 6:], xy[:, 6:], 80.0)
+    return Window(Seen(film(xy[:, :6]), xy[:, :6], times[:, :6]), times[:, 6:], xy[:, 6:], 80.0, xy)
 
 
 def film(xy: Tensor) -> Tensor:
