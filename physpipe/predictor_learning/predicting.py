@@ -73,6 +73,7 @@ def learn_predictor(
     valid = TrackWindows(clips, table, "valid", kind.seen_frames, last_frame, kind.sees_end)
     print(f"{name}: {len(train)} windows to learn from; {train.skipped} left out, an object is lost in them")
     predictor = kind(params.model, train.objects)
+    predictor.watch([torch.from_numpy(path) for path in train.camera or []])
     checked = valid.evenly(params.windows.valid_windows).tolist()
     size = params.fit.batch_size
     stretches = [checked[i : i + size] for i in range(0, len(checked), size)]

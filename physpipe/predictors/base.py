@@ -1,6 +1,7 @@
 """What every predictor of motion is given, gives back, and is judged by while it learns."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -86,6 +87,9 @@ class Predictor(nn.Module, ABC):
         """Mean distance from the target in pixels; its square would be ruled by the few wildest windows."""
         distance = distance_px(self(batch.seen, batch.asked_times).mean, batch.target)
         return distance.mean(), {"train_last_px": distance[:, -1].mean().item()}
+
+    def watch(self, camera: Sequence[Tensor]) -> None:
+        """Before all else is learned, of one that `steadies`: the camera's way (T, 2) px in each training clip."""
 
     def calibrate(self, held_out: Window) -> None:
         """Once all else is learned: fits how sure it is to stretches of film that nothing was learned from.

@@ -32,18 +32,19 @@ def steadied(seen: Seen) -> Seen:
 
 
 def camera_path(frames: Tensor) -> Tensor:
-    """(T, 2) px by which the still scene has shifted in each of (T, 3, H, W) frames since the first.
+    """(..., T, 2) px by which the still scene has shifted in each of (..., T, 3, H, W) frames since the first.
 
     Summed from frame to frame, so errors add up as a random walk.
     """
     grey = _smooth(frames)
-    steps = _shifts(grey[1:], grey[:-1])
-    return torch.cat([steps.new_zeros(1, 2), steps.cumsum(0)])
+    steps = _shifts(grey[..., 1:, :, :], grey[..., :-1, :, :])
+    return torch.cat([torch.zeros_like(steps[..., :1, :]), steps.cumsum(-2)], dim=-2)
 
 
 def _smooth(frames: Tensor) -> Tensor:
     """(..., H - 2, W - 2) brightness of frames (..., 3, H, W), a little smoothed."""
-    return F.avg_pool2d(frames.float().mean(-3), 3, stride=1)
+    grey = frames.float().mean(-3)
+    return F.avg_pool2d(grey.flatten(0, -3), 3, stride=1).unflatten(0, grey.shape[:-2])
 
 
 def _shifts(later: Tensor, earlier: Tensor) -> Tensor:

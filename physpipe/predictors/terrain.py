@@ -10,6 +10,8 @@ Learned from forecasts alone the law gets stuck where it is right on the whole a
 matched, place by place, to the changes of velocity along smoothed tracks; then whole forecasts are trained, too.
 """
 
+from collections.abc import Sequence
+
 import torch
 from pydantic import Field
 from torch import Tensor, nn
@@ -19,7 +21,8 @@ from physpipe.predictors.base import Forecast, Predictor, Seen, Window, distance
 from physpipe.predictors.course import Course, stretches
 from physpipe.predictors.kinematics import at, mended, odd, past
 from physpipe.predictors.layers import FrameUnit, zero_reader
-from physpipe.predictors.steadying import steadied
+from physpipe.predictors.steadying import camera_path, steadied
+from physpipe.predictors.sway import Sway
 from physpipe.predictors.symmetry import mean_over_symmetries
 from physpipe.predictors.terrain_law import Law, Motion, Scene, read
 from physpipe.predictors.terrain_map import TerrainMap
@@ -69,16 +72,21 @@ class Terrain(Predictor):
         self.describe = nn.Linear(C, code)
         self.start = zero_reader(2 * C + 4 * self.seen_frames, hidden, 2 * (self.seen_frames + 1), nn.SiLU)
         self.law = Law(C, C, code, hidden, pairs=objects > 1)
+        self.sway = Sway(self.seen_frames)
         self.spread = Spread()
         self.register_buffer("steps", torch.tensor(0))
 
     def forward(self, seen: Seen, asked_times: Tensor) -> Forecast:
-        seen = steadied(seen)  # once, and not for every mirror
-        mean = self._shown(seen, asked_times)
+        steady = steadied(seen)  # once, and not for every mirror
+        mean = self._swayed(seen, asked_times, self._shown(steady, asked_times))
         if self.training or not self.params.spread_rounds:
             return Forecast(mean)
-        cov = self.spread(self._carried(seen, asked_times)) * FrameUnit.of(seen.frames).px ** 2
+        cov = self.spread(self._carried(steady, asked_times)) * FrameUnit.of(seen.frames).px ** 2
         return Forecast(mean, at(cov, _ahead(seen, asked_times)))
+
+    def watch(self, camera: Sequence[Tensor]) -> None:
+        """Learns where a camera sways to."""
+        self.sway.fit(camera)
 
     def loss(self, batch: Window, generator: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """How far off the law is along the tracks, in pixels a frame squared; then that of forecasts in pixels, too."""
@@ -110,8 +118,15 @@ class Terrain(Predictor):
         """Fits the covariance, which is of no use before."""
         if self.params.spread_rounds:
             seen, times = steadied(held_out.seen), held_out.asked_times
-            missed = (held_out.target - self._shown(seen, times)) / FrameUnit.of(seen.frames).px
+            shown = self._swayed(held_out.seen, times, self._shown(seen, times))
+            missed = (held_out.target - shown) / FrameUnit.of(seen.frames).px
             self.spread.fit(self._carried(seen, times), missed, self.params.spread_rounds)
+
+    def _swayed(self, seen: Seen, asked_times: Tensor, places: Tensor) -> Tensor:
+        """`places` (B, N, K, 2) px of a still camera as the one of the film will show them, unless that is still."""
+        if seen.steady:
+            return places
+        return places + self.sway(camera_path(seen.frames), _ahead(seen, asked_times)).unsqueeze(2)
 
     def _shown(self, seen: Seen, asked_times: Tensor) -> Tensor:
         """(B, N, K, 2) px, what a forecast shows of steady positions."""
