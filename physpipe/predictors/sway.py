@@ -27,7 +27,7 @@ class Sway(nn.Module):
         self.register_buffer("weights", torch.zeros(FURTHEST, seen_frames - 1))
 
     def forward(self, path: Tensor, ahead: Tensor) -> Tensor:
-        """(B, N, 2) px to the frames `ahead` (B, N) of the last seen one; `path` (B, T0, 2) px is that between those."""
+        """(B, N, 2) px to the frames `ahead` (B, N) of the last seen one; `path` (B, T0, 2) px is between those."""
         weights = self.weights[ahead.clamp(1, FURTHEST) - 1] * (ahead <= FURTHEST).unsqueeze(-1)  # (B, N, T0 - 1)
         return weights @ (path - path[:, -1:])[:, :-1]
 

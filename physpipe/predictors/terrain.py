@@ -4,10 +4,11 @@ The environment is encoded once from the seen frames into a map. At every step t
 position, a small network gives the law of motion there, and velocity and position follow: v += a, p += v. What the
 paper's conclusion asks for: the environment is remembered however long the forecast, and only the motion is propagated.
 Objects that meet push each other, and cushions push what runs into them. The camera's own motion is taken off the seen
-positions, and a forecast says how sure it is.
+positions, where it sways to is added to the forecast ones, and a forecast says how sure it is.
 
 Learned from forecasts alone the law gets stuck where it is right on the whole and nowhere in particular. So it is first
 matched, place by place, to the changes of velocity along smoothed tracks; then whole forecasts are trained, too.
+Looking at the ground takes longest: each look serves all of the clip's track, and forecasts of several stretches of it.
 """
 
 from collections.abc import Sequence
