@@ -7,7 +7,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from physpipe.predictor_learning.windows import TrackWindows, as_input
+from physpipe.predictor_learning.arrays import as_input
+from physpipe.predictor_learning.windows import TrackWindows
 from physpipe.predictors.base import Window
 from physpipe.tracknet.moments import Moments
 

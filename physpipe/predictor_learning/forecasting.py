@@ -12,7 +12,8 @@ from physpipe.core.errors import InputError
 from physpipe.core.progress import progress
 from physpipe.io import forecasts, tracks
 from physpipe.io.clips import TABLE, ClipSet, Split
-from physpipe.predictor_learning.windows import KEYS, as_input
+from physpipe.predictor_learning.arrays import as_input
+from physpipe.predictor_learning.windows import KEYS
 from physpipe.predictors.base import Forecast, Predictor, Seen
 
 TOGETHER = 32

@@ -8,8 +8,6 @@ import pandas as pd
 import torch
 from numpy.typing import NDArray
 from pydantic import Field
-from torch import Tensor
-from torch.nn.utils.rnn import pad_sequence
 
 from physpipe.core.determinism import device
 from physpipe.core.errors import InputError
@@ -17,6 +15,7 @@ from physpipe.core.params import Section
 from physpipe.core.progress import progress
 from physpipe.io import tracks
 from physpipe.io.clips import TABLE, ClipSet, Split, common_size
+from physpipe.predictor_learning.arrays import as_input, padded, whole
 from physpipe.predictor_learning.mirrors import Symmetry, mirrored
 from physpipe.predictors.base import Seen, Window
 from physpipe.predictors.steadying import camera_path
@@ -76,9 +75,9 @@ class TrackWindows:
         self.xy = [known[name] for name in names]
         self.camera = self._camera_paths() if steady else None
         """Of each clip, (T, 2) px by which the still scene has shifted since the first frame; None: not taken off."""
-        whole = [_whole(xy, horizon + 1) for xy in self.xy]
-        self.index = np.array([(i, at) for i, ok in enumerate(whole) for at in np.flatnonzero(ok)], np.int64)
-        self.skipped = sum(int((~ok).sum()) for ok in whole)
+        begins = [whole(xy, horizon + 1) for xy in self.xy]
+        self.index = np.array([(i, at) for i, ok in enumerate(begins) for at in np.flatnonzero(ok)], np.int64)
+        self.skipped = sum(int((~ok).sum()) for ok in begins)
         """Windows left out because an object is lost in them."""
         if not len(self.index):
             reason = f"no {split} clip has {horizon + 1} consecutive frames with all objects tracked"
@@ -103,7 +102,7 @@ class TrackWindows:
         cut = [self._cut(number) for number in numbers]
         if symmetries is not None:
             cut = [mirrored(*window, how) for window, how in zip(cut, symmetries, strict=True)]
-        track = _padded([positions for _, positions in cut]).to(device())
+        track = padded([positions for _, positions in cut]).to(device())
         within = torch.from_numpy(self.index[list(numbers), 1, None] + np.arange(self.horizon + 1)).to(device())
         xy = track[torch.arange(len(cut), device=device())[:, None], within]
         times = torch.arange(self.horizon + 1, dtype=torch.float32, device=device()).expand(len(cut), -1)
@@ -145,21 +144,3 @@ class TrackWindows:
 
     def _camera_paths(self) -> list[NDArray[np.float32]]:
         return [camera_path(as_input(np.stack([each]))[0]).cpu().numpy() for each in progress(self.frames, "camera")]
-
-
-def as_input(frames: NDArray[np.uint8]) -> Tensor:
-    """(B, T, H, W, 3) uint8 to (B, T, 3, H, W) in [0, 1] on the device."""
-    return torch.from_numpy(frames).to(device()).permute(0, 1, 4, 2, 3).float() / 255
-
-
-def _whole(xy: NDArray[np.float32], length: int) -> NDArray[np.bool_]:
-    """For each start, whether `length` frames of xy (T, K, 2) from there on are all known."""
-    known = np.isfinite(xy.sum(axis=(1, 2)))
-    if len(known) < length:
-        return np.zeros(0, bool)
-    return np.logical_and.reduce(np.lib.stride_tricks.sliding_window_view(known, length), axis=1)
-
-
-def _padded(paths: Sequence[NDArray[np.float32]]) -> Tensor:
-    """(B, L, K, 2) of paths (T, K, 2), those shorter than the longest going on as NaN."""
-    return pad_sequence([torch.from_numpy(np.ascontiguousarray(each)) for each in paths], True, torch.nan)

@@ -14,7 +14,7 @@ from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.polynomial import NoParams
 from physpipe.predictors.probnet import ProbNetParams
 from physpipe.predictors.tensor_state import TensorStateParams
-from physpipe.predictors.terrain import TerrainParams
+from physpipe.predictors.terrain_params import TerrainParams
 from physpipe.predictors.vin import VinParams
 
 HEIGHT, WIDTH, OBJECTS = 32, 48, 3

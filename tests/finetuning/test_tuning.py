@@ -21,7 +21,7 @@ from physpipe.predictors import PREDICTORS
 from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.probnet import ProbNetParams
 from physpipe.predictors.tensor_state import TensorStateParams
-from physpipe.predictors.terrain import TerrainParams
+from physpipe.predictors.terrain_params import TerrainParams
 from physpipe.trackers import detectors
 
 WINDOWS = WindowParams(noise_px=0, first_share=0.2, valid_windows=8)

@@ -21,7 +21,7 @@ from physpipe.predictor_learning.windows import TrackWindows, WindowParams
 from physpipe.predictors.interpnet import InterpNetParams
 from physpipe.predictors.probnet import ProbNetParams
 from physpipe.predictors.tensor_state import TensorStateParams
-from physpipe.predictors.terrain import TerrainParams
+from physpipe.predictors.terrain_params import TerrainParams
 
 HORIZON, END = 6, 9
 STATE = {"stem": 8, "channels": 8, "hidden": 8, "follow": True, "symmetric": True, "objects_alike": True}

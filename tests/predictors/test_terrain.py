@@ -9,8 +9,9 @@ from springs import losses_by_learning
 from physpipe.core.determinism import torch_generator
 from physpipe.predictors.base import Seen, Window
 from physpipe.predictors.kinematics import odd
-from physpipe.predictors.terrain import Terrain, TerrainParams
+from physpipe.predictors.terrain import Terrain
 from physpipe.predictors.terrain_law import Motion, Scene
+from physpipe.predictors.terrain_params import TerrainParams
 
 HEIGHT, WIDTH = 40, 48
 SMALL = TerrainParams(
