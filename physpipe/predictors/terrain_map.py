@@ -5,6 +5,10 @@ from torch import Tensor, nn
 from torch.nn import functional as F
 
 from physpipe.predictors.layers import normed_conv
+from physpipe.predictors.relief import WIDTHS, Wide, relief
+
+DILATIONS = (1, 2, 1, 2)
+"""Of the blocks that read slopes off shading."""
 
 
 class TerrainMap(nn.Module):
@@ -14,9 +18,10 @@ class TerrainMap(nn.Module):
         super().__init__()
         C = channels
         self.fine = nn.Sequential(
-            normed_conv(5, C // 2, kernel=4, stride=2), normed_conv(C // 2, C, kernel=4, stride=2)
+            normed_conv(5 + len(WIDTHS), C // 2, kernel=4, stride=2), normed_conv(C // 2, C, kernel=4, stride=2)
         )
-        self.middle = normed_conv(C, C, kernel=3, stride=1)
+        slopes = [Wide(C, dilation) for dilation in DILATIONS]
+        self.middle = nn.Sequential(normed_conv(C, C, kernel=3, stride=1), *slopes)
         self.coarse = nn.Sequential(normed_conv(C, C, kernel=4, stride=2), normed_conv(C, C, kernel=3, stride=1))
         self.join = nn.Sequential(normed_conv(2 * C, C, kernel=1, stride=1), nn.Conv2d(C, C, 3, padding=1))
 
@@ -25,9 +30,9 @@ class TerrainMap(nn.Module):
 
         `aspect` (2,): the frame's (width, height), half of its longer side being 1.
         """
-        still = F.avg_pool2d(frames.mean(1) - 0.5, 2)  # a terrain is smooth
-        seen = torch.cat([still, _coordinates(still, aspect)], dim=1).contiguous(memory_format=torch.channels_last)
-        middle = self.middle(self.fine(seen))
+        still = F.avg_pool2d(frames.mean(1), 2)  # a terrain is smooth
+        seen = torch.cat([still - 0.5, _coordinates(still, aspect), relief(still)], dim=1)
+        middle = self.middle(self.fine(seen.contiguous(memory_format=torch.channels_last)))
         coarse = self.coarse(middle)
         joined = self.join(torch.cat([middle, _enlarged(coarse, middle)], dim=1))
         return joined.float(), coarse.float().mean((2, 3))
