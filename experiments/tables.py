@@ -12,6 +12,8 @@ SHOWN = {"unsupervised": "unsupervised_sequential", "unsupervised_unrefined": "u
 """Keys of rows that go by another name on the page, where every recipe is named."""
 LEARNED = ("unsupervised", "flow_")
 """Beginnings of the names of trackers that were trained."""
+RUNS = (*OURS, "flow_simple", "flow_blob")
+"""A row of each run that a data set takes: missing ones have not been measured."""
 NO_TOOLS = ("centre", "persistence")
 """Rows that stand still, to compare with."""
 TOLD_STARTS = ("lab", "lucas_kanade", "dis_", "farneback_")
@@ -98,7 +100,12 @@ def _section(name: str, rows: Mapping[str, Row]) -> str:
     order = sorted(rows, key=lambda each: (not each.startswith(LEARNED[0]), _rank(rows[each])))
     lines = [line(["tracker", *columns.values()]), line(["---", *["---:"] * len(columns)])]
     lines += [line([f"`{SHOWN.get(each, each)}`", *(_cell(key, rows[each]) for key in columns)]) for each in order]
-    return f"## {name}\n\n{_measured(rows)}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+    return f"## {name}\n\n{_unrun(rows)}{_measured(rows)}\n\n" + "".join(lines) + f"\n{verdict(rows)}\n"
+
+
+def _unrun(rows: Mapping[str, Row]) -> str:
+    lacking = ", ".join(f"`{SHOWN.get(name, name)}`" for name in RUNS if name not in rows)
+    return f"Not run yet: {lacking}.\n\n" if lacking else ""
 
 
 def _measured(rows: Mapping[str, Row]) -> str:

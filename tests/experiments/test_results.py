@@ -88,6 +88,7 @@ def test_the_page_has_a_line_a_tracker_and_says_what_did_not_run():
     assert "| `lab` | 1.00 | – | 9.00 | 0.25 | – |" in lines
     assert next(line for line in lines if line.startswith("| `")).startswith("| `unsupervised_sequential`")
     assert "HOTA" not in text
+    assert "Not run yet: `unsupervised_joint`, `flow_simple`." in lines
     assert lines[-1] == "- `tray`: no film"
     assert "one thread of a machine; ours on its 2 cores: 1,234 (`bowls`)." in text
 
