@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 from experiments.records import ALL, CommandError, Experiment, Runner, command, finished, note_cost
 
-POLL_S = 10.0
+POLL_S = 30.0
+"""Between looks at the queue: each takes DVC one to two seconds of a core, and experiments minutes."""
 PREDICTORS = "data/predictors"
 """Folder that the report depends on, which nothing makes in an experiment that learns no predictor."""
 PATIENCE = 6
